@@ -1,0 +1,31 @@
+#pragma once
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "core/charge_motion.h"
+#include "core/frame.h"
+#include "core/progress.h"
+
+// Front door of analysis: frames (truth) or pictures (films, stills) -> ChargeMotion.
+namespace tumble::analysis {
+
+// Fills `frame` with the next one; false at the end.
+using NextFrame = std::function<bool(Frame&)>;
+
+// Truth from a run's frames.
+ChargeMotion measure_frames(const RunSetup& setup, const NextFrame& next, const Progress& progress = {});
+
+struct FilmOptions {
+  const Config* mill = nullptr;            // what is known of the mill (may be partial), or nothing
+  double recorded_fps = kNotGiven;         // the camera's rate where known and different from the file's [1/s]
+  Rotation rotation = Rotation::kUnknown;  // unknown: found from the film
+};
+
+// A film in any container that OpenCV reads. Throws InputError when it cannot be read or no mill is found in it.
+ChargeMotion measure_film(const std::string& path, const FilmOptions& options, const Progress& progress = {});
+
+// A folder of still pictures of one mill, far apart in time or not, in order of their names.
+ChargeMotion measure_stills(const std::string& folder, const FilmOptions& options, const Progress& progress = {});
+
+}  // namespace tumble::analysis

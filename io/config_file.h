@@ -1,0 +1,19 @@
+#pragma once
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "core/config.h"
+
+namespace tumble::io {
+
+// Reads MILL.toml, applies `--set key=value` assignments in order, and checks ranges (core/config.h `check`). Whether
+// it is complete is asked by whoever simulates. Throws InputError: "mill.toml:12: mill.diamter: unknown key; did you
+// mean mill.diameter?".
+Config read_config(const std::filesystem::path& path, const std::vector<std::string>& sets = {});
+Config parse_config(const std::string& toml, const std::string& name, const std::vector<std::string>& sets = {});
+
+// The config as MILL.toml text with every key that is in force; parse_config gives the same config back, to the bit.
+std::string to_toml(const Config& config);
+
+}  // namespace tumble::io
