@@ -1,0 +1,1 @@
+#include "analysis/charge_motion.h"

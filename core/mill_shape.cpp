@@ -1,0 +1,1 @@
+#include "core/mill_shape.h"

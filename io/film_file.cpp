@@ -1,0 +1,1 @@
+#include "io/film_file.h"

@@ -1,0 +1,1 @@
+#include "io/motion_file.h"

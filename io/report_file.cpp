@@ -1,0 +1,1 @@
+#include "io/report_file.h"
