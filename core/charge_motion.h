@@ -13,32 +13,32 @@ namespace tumble {
 enum class Rotation { kUnknown, kCounterClockwise, kClockwise };  // as seen by the camera, before mirroring
 enum class MotionSource { kRunFile, kFilm, kStills };
 
-struct ProfileRow {          // one frame
-  int frame = 0;             // of the file, 0-based
-  double time = 0;           // [s]
+struct ProfileRow {  // one frame
+  int frame = 0;     // of the file, 0-based
+  double time = 0;   // [s]
   double mill_angle_deg = kNotGiven;
   double toe_deg = kNotGiven;
   double shoulder_deg = kNotGiven;
-  double head = kNotGiven;   // [m]
+  double head = kNotGiven;  // [m]
 };
 
-struct TrackPoint {          // one ball seen in one frame
+struct TrackPoint {  // one ball seen in one frame
   int frame = 0;
   int id = 0;
-  double time = 0;           // [s]
-  double x = 0, y = 0;       // [m]
-  double vx = kNotGiven, vy = kNotGiven;  // [m/s]
-  double radius = kNotGiven; // [m]
-  double spin = kNotGiven;   // [rad/s]
+  double time = 0;                            // [s]
+  double x = 0, y = 0;                        // [m]
+  double vx = kNotGiven, vy = kNotGiven;      // [m/s]
+  double radius = kNotGiven;                  // [m]
+  double spin = kNotGiven;                    // [rad/s]
   double u_px = kNotGiven, v_px = kNotGiven;  // centre in the film's own pixels, v down; NaN for run files
 };
 
-struct Field {               // on a square grid over the mill, row by row from the lowest y; NaN where nothing is known
-  double cell = 0;           // edge [m]
-  int n = 0;                 // cells along x and y; the grid is centred on the axis
-  std::vector<double> occupancy, occupancy_se;      // share of the area covered by balls, time mean
-  std::vector<double> vx, vy, vx_se, vy_se;         // mean ball velocity [m/s]
-  std::vector<double> temperature;                  // granular temperature, <(v - <v>)^2> / 2 [m2/s2]
+struct Field {      // on a square grid over the mill, row by row from the lowest y; NaN where nothing is known
+  double cell = 0;  // edge [m]
+  int n = 0;        // cells along x and y; the grid is centred on the axis
+  std::vector<double> occupancy, occupancy_se;  // share of the area covered by balls, time mean
+  std::vector<double> vx, vy, vx_se, vy_se;     // mean ball velocity [m/s]
+  std::vector<double> temperature;              // granular temperature, <(v - <v>)^2> / 2 [m2/s2]
 };
 
 struct TorqueRow {
@@ -47,8 +47,8 @@ struct TorqueRow {
   double power = 0;   // [W]
 };
 
-struct CameraView {                 // films and stills only
-  double centre_u_px = kNotGiven;   // of the inner shell
+struct CameraView {                // films and stills only
+  double centre_u_px = kNotGiven;  // of the inner shell
   double centre_v_px = kNotGiven;
   double radius_px = kNotGiven;
   double metres_per_pixel = kNotGiven;
@@ -58,29 +58,29 @@ struct CameraView {                 // films and stills only
 
 struct ChargeMotion {
   MotionSource source = MotionSource::kRunFile;
-  std::string origin;                   // the file's name
+  std::string origin;  // the file's name
   Rotation rotation = Rotation::kUnknown;
-  int lifter_count = 0;                 // 0 where unknown or none
-  double mill_radius = kNotGiven;       // R [m]
-  double tip_radius = kNotGiven;        // [m]
+  int lifter_count = 0;            // 0 where unknown or none
+  double mill_radius = kNotGiven;  // R [m]
+  double tip_radius = kNotGiven;   // [m]
   int frames = 0;
-  double frames_per_second = kNotGiven; // true ones
+  double frames_per_second = kNotGiven;  // true ones
   std::vector<int> duplicated_frames, dropped_frames;
 
   Estimate speed_rpm, speed_fraction, filling;
   Estimate toe_deg, shoulder_deg, toe_bulk_deg, shoulder_bulk_deg, toe_outer_deg, shoulder_outer_deg;
-  Estimate head;                        // [m]
+  Estimate head;                                              // [m]
   Estimate centre_of_circulation_x, centre_of_circulation_y;  // [m]
   Estimate departure_deg, impact_toe_deg;
-  Estimate torque, torque_closure;      // of one slice [N m]; run files only
+  Estimate torque, torque_closure;  // of one slice [N m]; run files only
   CameraView camera;
 
-  std::array<double, 360> ring_occupancy{};     // time mean, bin i = [i, i + 1) degrees; NaN where hidden
+  std::array<double, 360> ring_occupancy{};  // time mean, bin i = [i, i + 1) degrees; NaN where hidden
   std::vector<ProfileRow> profile;
-  std::vector<TrackPoint> tracks;               // by frame, then id
+  std::vector<TrackPoint> tracks;  // by frame, then id
   std::vector<TorqueRow> torque_series;
   Field field;
-  std::vector<std::string> caveats;             // what a user must know before believing the numbers
+  std::vector<std::string> caveats;  // what a user must know before believing the numbers
 };
 
 }  // namespace tumble

@@ -1,1 +1,289 @@
 #include "core/config.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <numeric>
+
+#include "core/angle.h"
+#include "core/error.h"
+#include "core/mill_shape.h"
+
+namespace tumble {
+namespace {
+
+std::string number(double v) {
+  char text[40];
+  std::snprintf(text, sizeof text, "%.6g", v);
+  return text;
+}
+
+struct Checker {
+  const Config& config;
+
+  [[noreturn]] void fail(const std::string& key, const std::string& problem) const {
+    throw InputError(place_of(config, key), problem);
+  }
+  // NaN passes: not given.
+  void positive(const std::string& key, double v, const char* unit) const {
+    if (v <= 0 || std::isinf(v)) fail(key, "is " + number(v) + ", must be a positive number" + in(unit));
+  }
+  void not_negative(const std::string& key, double v, const char* unit) const {
+    if (v < 0 || std::isinf(v)) fail(key, "is " + number(v) + ", must be 0 or more" + in(unit));
+  }
+  void range(const std::string& key, double v, double low, double high, const char* unit) const {
+    if (v < low || v > high)
+      fail(key, "is " + number(v) + ", must lie between " + number(low) + " and " + number(high) + in(unit));
+  }
+  void given(const std::string& key, double v, const std::string& what) const {
+    if (std::isnan(v)) fail(key, "is missing; give " + what);
+  }
+  static std::string in(const char* unit) { return *unit ? std::string(" ") + unit : ""; }
+};
+
+void check_mill(const Checker& c, const Mill& m) {
+  c.positive("mill.diameter", m.diameter, "m");
+  c.positive("mill.length", m.length, "m");
+  c.range("mill.speed", m.speed, 0, 5, "of critical speed (for rev/min use mill.speed_rpm)");
+  c.not_negative("mill.speed_rpm", m.speed_rpm, "rev/min");
+  c.positive("mill.critical_speed_rpm", m.critical_speed_rpm, "rev/min");
+  if (!std::isnan(m.speed) && !std::isnan(m.speed_rpm))
+    c.fail("mill.speed_rpm", "excludes mill.speed; keep one of the two");
+  if (m.slices && *m.slices < 1) c.fail("mill.slices", "is " + std::to_string(*m.slices) + ", must be 1 or more");
+}
+
+void check_lifters(const Checker& c, const Mill& m) {
+  const Lifters& l = m.lifters;
+  if (l.profile == LifterProfile::kNone) return;
+  c.range("mill.lifters.count", l.count, 0, 100000, "");
+  c.positive("mill.lifters.height", l.height, "m");
+  c.positive("mill.lifters.width", l.width, "m");
+  c.range("mill.lifters.leading_angle_deg", l.leading_angle_deg, 0, 85, "degrees from the radius");
+  c.range("mill.lifters.trailing_angle_deg", l.trailing_angle_deg, 0, 85, "degrees from the radius");
+  if (l.profile == LifterProfile::kRectangle && (l.leading_angle_deg > 0 || l.trailing_angle_deg > 0))
+    c.fail(l.leading_angle_deg > 0 ? "mill.lifters.leading_angle_deg" : "mill.lifters.trailing_angle_deg",
+           "a rectangle's faces are radial; use profile = \"trapezoid\"");
+  const double radius = m.diameter / 2;
+  if (l.height >= radius)
+    c.fail("mill.lifters.height",
+           "is " + number(l.height) + " m, reaches the mill's axis; must be below the radius " + number(radius) + " m");
+  if (l.count < 1 || std::isnan(l.width) || std::isnan(l.height) || std::isnan(radius)) return;
+
+  if (l.profile == LifterProfile::kTrapezoid) {
+    const double trailing = std::isnan(l.trailing_angle_deg) ? l.leading_angle_deg : l.trailing_angle_deg;
+    const double top = l.width - l.height * (std::tan(radians(l.leading_angle_deg)) + std::tan(radians(trailing)));
+    if (top < 0)
+      c.fail("mill.lifters.width", "is " + number(l.width) +
+                                       " m, the two faces cross below the top; must be at least " +
+                                       number(l.width - top) + " m with these angles and height");
+  }
+  if (l.profile == LifterProfile::kTriangle && !std::isnan(l.leading_angle_deg) && !std::isnan(l.trailing_angle_deg)) {
+    const double width = l.height * (std::tan(radians(l.leading_angle_deg)) + std::tan(radians(l.trailing_angle_deg)));
+    if (std::abs(width - l.width) > 0.02 * l.width)
+      c.fail("mill.lifters.width", "is " + number(l.width) + " m, but height and the two angles make " + number(width) +
+                                       " m; give the width and one angle");
+  }
+  // Overlap: a corner of lifter 0 beyond half the pitch, at the foot or (tall lifters) at the tip.
+  const MillShape shape = make_mill_shape(m);
+  for (const auto& p : shape.lifter) {
+    const double most = std::min(p.norm(), shape.radius) * std::sin(std::min(shape.pitch() / 2, kPi / 2));
+    if (l.count > 1 && std::abs(p.y()) > most)
+      c.fail("mill.lifters.count", std::to_string(l.count) + " lifters of width " + number(l.width) + " m and height " +
+                                       number(l.height) + " m overlap in a mill of diameter " + number(m.diameter) +
+                                       " m; use fewer or narrower ones");
+  }
+}
+
+void check_charge(const Checker& c, const Config& config) {
+  const ChargeMix& charge = config.charge;
+  if (!std::isnan(charge.filling) && charge.count)
+    c.fail("charge.count", "excludes charge.filling; keep one of the two");
+  if (charge.filling <= 0 || charge.filling > 0.8)
+    c.fail("charge.filling",
+           "is " + number(charge.filling) +
+               ", must be above 0 and at most 0.8 (a fraction of the shell's area; mills run at 0.2 to 0.45)");
+  if (charge.count && (*charge.count < 1 || *charge.count > 10'000'000))
+    c.fail("charge.count", "is " + std::to_string(*charge.count) + ", must lie between 1 and 10000000");
+  c.positive("charge.bulk_density", charge.bulk_density, "kg/m3");
+  const double tip =
+      std::isnan(config.mill.lifters.height) ? config.mill.diameter / 2 : make_mill_shape(config.mill).tip_radius;
+  for (const BallClass& ball : charge.balls) {
+    c.positive("charge.balls", ball.radius, "m for a radius");
+    c.positive("charge.balls", ball.mass, "kg for a mass");
+    c.positive("charge.balls", ball.share, "for a share");
+    if (ball.radius >= tip)
+      c.fail("charge.balls", "a ball of radius " + number(ball.radius) +
+                                 " m does not fit into the mill, which leaves " + number(tip) +
+                                 " m inside the lifters; radius and diameter are in metres");
+  }
+  if (charge.balls.empty() || std::isnan(config.mill.diameter)) return;
+  if (!charge.count && std::isnan(charge.filling)) return;
+  const double filling = filling_of(config, class_counts(config));
+  if (filling > 0.85)
+    c.fail("charge.count", std::to_string(charge.count.value_or(0)) + " balls fill " + number(filling) +
+                               " of the mill, must be at most 0.8; use fewer or smaller balls");
+}
+
+void check_contact(const Checker& c, const Contact& k) {
+  c.positive("contact.normal_stiffness", k.normal_stiffness, "N/m");
+  c.not_negative("contact.tangential_stiffness", k.tangential_stiffness, "N/m");
+  c.not_negative("contact.friction", k.friction, "");
+  c.range("contact.restitution", k.restitution, 0.01, 1, "");
+  c.positive("contact.wall.normal_stiffness", k.wall.normal_stiffness, "N/m");
+  c.not_negative("contact.wall.tangential_stiffness", k.wall.tangential_stiffness, "N/m");
+  c.not_negative("contact.wall.friction", k.wall.friction, "");
+  c.range("contact.wall.restitution", k.wall.restitution, 0.01, 1, "");
+}
+
+void check_run(const Checker& c, const RunPlan& run) {
+  c.range("run.spin_up", run.spin_up, 0, 1e6, "revolutions");
+  c.positive("run.revolutions", run.revolutions, "revolutions");
+  c.positive("run.frames_per_second", run.frames_per_second, "frames per simulated second");
+  c.positive("run.time_step", run.time_step, "s");
+}
+
+}  // namespace
+
+std::string place_of(const Config& config, const std::string& key) {
+  const auto it = config.origin.find(key);
+  return (it == config.origin.end() ? config.file : it->second) + ": " + key;
+}
+
+void check(const Config& config) {
+  const Checker c{config};
+  check_mill(c, config.mill);
+  check_lifters(c, config.mill);
+  check_charge(c, config);
+  check_contact(c, config.contact);
+  check_run(c, config.run);
+}
+
+void check_complete(const Config& config) {
+  const Checker c{config};
+  c.given("mill.diameter", config.mill.diameter, "the diameter inside the shell in m");
+  if (std::isnan(config.mill.speed) && std::isnan(config.mill.speed_rpm))
+    c.fail("mill.speed", "is missing; give the fraction of critical speed, or mill.speed_rpm");
+  const Lifters& l = config.mill.lifters;
+  if (l.profile != LifterProfile::kNone) {
+    if (l.count < 1) c.fail("mill.lifters.count", "is missing; give the number of lifters, or profile = \"none\"");
+    c.given("mill.lifters.height", l.height, "the height above the shell in m");
+    c.given("mill.lifters.width", l.width, "the width at the foot in m");
+    if (l.profile == LifterProfile::kTrapezoid)
+      c.given("mill.lifters.leading_angle_deg", l.leading_angle_deg, "the leading face's angle from the radius");
+  }
+  if (config.charge.balls.empty())
+    c.fail("charge.balls", "is missing; give [ { radius = 0.012, mass = 0.060, share = 1.0 } ], in m and kg");
+  for (const BallClass& ball : config.charge.balls) {
+    c.given("charge.balls", ball.radius, "each class a radius in m");
+    c.given("charge.balls", ball.mass, "each class a mass in kg, or a density in kg/m3");
+  }
+  if (!config.charge.count && std::isnan(config.charge.filling))
+    c.fail("charge.filling", "is missing; give the filling as a fraction, or charge.count");
+  check(config);
+}
+
+double critical_speed_rpm(const Mill& mill) {
+  if (!std::isnan(mill.critical_speed_rpm)) return mill.critical_speed_rpm;
+  return rpm_from_rad_s(std::sqrt(kGravity / (mill.diameter / 2)));
+}
+
+double speed_rpm(const Mill& mill) {
+  return std::isnan(mill.speed_rpm) ? mill.speed * critical_speed_rpm(mill) : mill.speed_rpm;
+}
+
+double speed_fraction(const Mill& mill) {
+  return std::isnan(mill.speed) ? mill.speed_rpm / critical_speed_rpm(mill) : mill.speed;
+}
+
+Contact wall_contact(const Contact& contact) {
+  const auto or_else = [](double wall, double ball) { return std::isnan(wall) ? ball : wall; };
+  Contact c = contact;
+  c.normal_stiffness = or_else(contact.wall.normal_stiffness, contact.normal_stiffness);
+  c.tangential_stiffness = or_else(contact.wall.tangential_stiffness, contact.tangential_stiffness);
+  c.friction = or_else(contact.wall.friction, contact.friction);
+  c.restitution = or_else(contact.wall.restitution, contact.restitution);
+  return c;
+}
+
+std::vector<int> class_counts(const Config& config) {
+  const auto& balls = config.charge.balls;
+  double shares = 0;
+  for (const BallClass& b : balls) shares += b.share;
+
+  const auto split = [&](int total) {  // largest remainder
+    std::vector<int> counts;
+    std::vector<double> remainder;
+    for (const BallClass& b : balls) {
+      const double exact = total * b.share / shares;
+      counts.push_back(static_cast<int>(exact));
+      remainder.push_back(exact - counts.back());
+    }
+    std::vector<std::size_t> order(balls.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::stable_sort(order.begin(), order.end(), [&](auto a, auto b) { return remainder[a] > remainder[b]; });
+    const int missing = total - std::accumulate(counts.begin(), counts.end(), 0);
+    for (int i = 0; i < missing; ++i) ++counts[order[static_cast<std::size_t>(i)]];
+    return counts;
+  };
+  if (config.charge.count) return split(*config.charge.count);
+
+  // The number nearest to the filling: start from the mean disc, then step, for rounding moves the mean.
+  double mean_area = 0;
+  for (const BallClass& b : balls) mean_area += b.share / shares * kPi * b.radius * b.radius;
+  const double shell_area = kPi * config.mill.diameter * config.mill.diameter / 4;
+  const double guess = config.charge.filling * kSettledAreaShare * shell_area / mean_area;
+  if (guess > 1e7)
+    throw InputError(place_of(config, "charge.filling"),
+                     "needs " + number(guess) + " balls, must be at most 10000000; radii are in metres");
+  int best = std::max(1, static_cast<int>(guess) - 2);
+  const auto error = [&](int n) { return std::abs(filling_of(config, split(n)) - config.charge.filling); };
+  for (int n = best + 1; n <= static_cast<int>(guess) + 3; ++n)
+    if (error(n) < error(best)) best = n;
+  return split(best);
+}
+
+double filling_of(const Config& config, const std::vector<int>& counts) {
+  double area = 0;
+  for (std::size_t i = 0; i < counts.size(); ++i) {
+    const double r = config.charge.balls[i].radius;
+    area += counts[i] * kPi * r * r;
+  }
+  return area / (kSettledAreaShare * kPi * config.mill.diameter * config.mill.diameter / 4);
+}
+
+double slice_mass(const Config& config, const std::vector<int>& counts) {
+  double mass = 0;
+  for (std::size_t i = 0; i < counts.size(); ++i) mass += counts[i] * config.charge.balls[i].mass;
+  return mass;
+}
+
+double slice_count(const Config& config) {
+  if (config.mill.slices) return *config.mill.slices;
+  const std::vector<int> counts = class_counts(config);
+  double diameters = 0, balls = 0;
+  for (std::size_t i = 0; i < counts.size(); ++i) {
+    diameters += counts[i] * 2 * config.charge.balls[i].radius;
+    balls += counts[i];
+  }
+  if (std::isnan(config.mill.length) || config.mill.length < 1.5 * diameters / balls) return 1;
+  const double volume = kPi * config.mill.diameter * config.mill.diameter / 4 * config.mill.length;
+  return filling_of(config, counts) * volume * config.charge.bulk_density / slice_mass(config, counts);
+}
+
+const char* name_of(LifterProfile profile) {
+  switch (profile) {
+    case LifterProfile::kNone:
+      return "none";
+    case LifterProfile::kRectangle:
+      return "rectangle";
+    case LifterProfile::kTriangle:
+      return "triangle";
+    case LifterProfile::kTrapezoid:
+      return "trapezoid";
+  }
+  return "";
+}
+
+const char* name_of(ContactLaw) { return "linear"; }
+
+}  // namespace tumble

@@ -16,12 +16,12 @@ enum class LifterProfile { kNone, kRectangle, kTriangle, kTrapezoid };
 enum class ContactLaw { kLinear };
 
 struct Lifters {
-  int count = 0;                                    // number of lifters round the shell, >= 1 unless profile is none
+  int count = 0;  // number of lifters round the shell, >= 1 unless profile is none
   LifterProfile profile = LifterProfile::kNone;
-  double height = kNotGiven;                        // above the shell, along the radius [m], > 0
-  double width = kNotGiven;                         // at the foot, across the radius [m], > 0
-  double leading_angle_deg = kNotGiven;             // leading face against the radius, 0 = radial, [0, 85]
-  double trailing_angle_deg = kNotGiven;            // trailing face against the radius, [0, 85]
+  double height = kNotGiven;              // above the shell, along the radius [m], > 0
+  double width = kNotGiven;               // at the foot, across the radius [m], > 0
+  double leading_angle_deg = kNotGiven;   // leading face against the radius, 0 = radial, [0, 85]
+  double trailing_angle_deg = kNotGiven;  // trailing face against the radius, [0, 85]
 };
 
 struct Mill {
@@ -41,17 +41,17 @@ struct BallClass {
 };
 
 struct ChargeMix {
-  double filling = kNotGiven;      // J = disc area / (0.82 x shell area), (0, 0.8]; excludes count
-  std::optional<int> count;        // number of balls in the slice, >= 1
-  double bulk_density = 4700.0;    // of the settled charge, voids included [kg/m3]
+  double filling = kNotGiven;    // J = disc area / (0.82 x shell area), (0, 0.8]; excludes count
+  std::optional<int> count;      // number of balls in the slice, >= 1
+  double bulk_density = 4700.0;  // of the settled charge, voids included [kg/m3]
   std::vector<BallClass> balls;
 };
 
-struct WallContact {                       // what is not given equals the value between balls
-  double normal_stiffness = kNotGiven;     // [N/m], > 0
-  double tangential_stiffness = kNotGiven; // [N/m], >= 0
-  double friction = kNotGiven;             // >= 0
-  double restitution = kNotGiven;          // (0, 1]
+struct WallContact {                        // what is not given equals the value between balls
+  double normal_stiffness = kNotGiven;      // [N/m], > 0
+  double tangential_stiffness = kNotGiven;  // [N/m], >= 0
+  double friction = kNotGiven;              // >= 0
+  double restitution = kNotGiven;           // (0, 1]
 };
 
 struct Contact {
@@ -64,12 +64,12 @@ struct Contact {
 };
 
 struct RunPlan {
-  double spin_up = 2.0;                // revolutions before anything is averaged, >= 0; used unless spin_up_auto
-  bool spin_up_auto = false;           // run until the averages are steady
-  double revolutions = 6.0;            // averaged and written, > 0
-  double frames_per_second = 200.0;    // written frames per simulated second, > 0
-  double time_step = kNotGiven;        // dt [s]; NaN = from the stability limit
-  std::uint64_t seed = 1;              // of the packing
+  double spin_up = 2.0;              // revolutions before anything is averaged, >= 0; used unless spin_up_auto
+  bool spin_up_auto = false;         // run until the averages are steady
+  double revolutions = 6.0;          // averaged and written, > 0
+  double frames_per_second = 200.0;  // written frames per simulated second, > 0
+  double time_step = kNotGiven;      // dt [s]; NaN = from the stability limit
+  std::uint64_t seed = 1;            // of the packing
 };
 
 struct Config {

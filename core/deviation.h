@@ -6,8 +6,8 @@
 
 namespace tumble {
 
-struct Difference {          // one quantity in two sources
-  std::string name;          // as in summary.json
+struct Difference {  // one quantity in two sources
+  std::string name;  // as in summary.json
   std::string unit;
   Estimate a, b;
   double difference = kNotGiven;  // b - a; directions in [-180, 180)
@@ -15,8 +15,8 @@ struct Difference {          // one quantity in two sources
   double z = kNotGiven;           // difference / se
 };
 
-struct Deviation {           // what `compare` finds between two charge motions
-  std::string a, b;          // their origins
+struct Deviation {   // what `compare` finds between two charge motions
+  std::string a, b;  // their origins
   std::vector<Difference> differences;
 };
 

@@ -8,56 +8,56 @@
 // What a simulation hands out: the run's setup once, then frames. Plain arrays, SI, index = ball.
 namespace tumble {
 
-struct Balls {                       // what does not change during a run
-  std::vector<double> radius;        // [m]
-  std::vector<double> mass;          // [kg]
+struct Balls {                 // what does not change during a run
+  std::vector<double> radius;  // [m]
+  std::vector<double> mass;    // [kg]
   std::size_t size() const { return radius.size(); }
 };
 
-struct Observables {                 // of one slice
-  double torque = kNotGiven;         // mean since the last frame of the full moment about the axis, > 0 drives the mill [N m]
-  double torque_shear = kNotGiven;   // the same by the 1992 paper's eq. 8: shear forces only [N m]
-  double torque_closure = kNotGiven; // M g x_com, mean since the last frame [N m]
-  double power = kNotGiven;          // torque x speed [W]
-  double kinetic = kNotGiven;        // translation and spin [J]
-  double potential = kNotGiven;      // against the axis [J]
-  double elastic = kNotGiven;        // in contact springs [J]
-  double drive_work = kNotGiven;     // done by the drive since the run's start [J]
-  std::vector<double> dissipation;   // by cause since the run's start [J], in the order of RunSetup::dissipation_causes
-  double locked_balls = 0;           // balls that have turned with the shell for more than a revolution
+struct Observables {          // of one slice
+  double torque = kNotGiven;  // mean since the last frame of the full moment about the axis, > 0 drives the mill [N m]
+  double torque_shear = kNotGiven;    // the same by the 1992 paper's eq. 8: shear forces only [N m]
+  double torque_closure = kNotGiven;  // M g x_com, mean since the last frame [N m]
+  double power = kNotGiven;           // torque x speed [W]
+  double kinetic = kNotGiven;         // translation and spin [J]
+  double potential = kNotGiven;       // against the axis [J]
+  double elastic = kNotGiven;         // in contact springs [J]
+  double drive_work = kNotGiven;      // done by the drive since the run's start [J]
+  std::vector<double> dissipation;  // by cause since the run's start [J], in the order of RunSetup::dissipation_causes
+  double locked_balls = 0;          // balls that have turned with the shell for more than a revolution
 };
 
 struct Frame {
-  std::int64_t step = 0;      // time steps since the run's start
-  double time = 0;            // since the first written frame [s]
-  double mill_angle = 0;      // theta, unwrapped [rad]
-  std::vector<double> x, y;   // [m]
-  std::vector<double> vx, vy; // [m/s]
-  std::vector<double> angle;  // of each ball's mark, unwrapped [rad]
-  std::vector<double> spin;   // angular velocity, counter-clockwise > 0 [rad/s]
+  std::int64_t step = 0;       // time steps since the run's start
+  double time = 0;             // since the first written frame [s]
+  double mill_angle = 0;       // theta, unwrapped [rad]
+  std::vector<double> x, y;    // [m]
+  std::vector<double> vx, vy;  // [m/s]
+  std::vector<double> angle;   // of each ball's mark, unwrapped [rad]
+  std::vector<double> spin;    // angular velocity, counter-clockwise > 0 [rad/s]
   Observables observed;
 };
 
-struct RunSetup {                                // known before the first frame
+struct RunSetup {  // known before the first frame
   Config config;
   Balls balls;
-  double time_step = 0;                          // dt [s]
-  double mill_speed = 0;                         // Omega [rad/s]
-  std::int64_t frame_count = 0;                  // frames that a whole run has
+  double time_step = 0;          // dt [s]
+  double mill_speed = 0;         // Omega [rad/s]
+  std::int64_t frame_count = 0;  // frames that a whole run has
   std::vector<std::string> dissipation_causes;
 };
 
-struct ImpactSpectrum {                // impacts by the energy lost in them, over the averaged revolutions
-  std::vector<double> edges_J;         // bin edges, logarithmic; the first and last bin take what lies outside
-  std::vector<double> ball_ball;       // number of impacts per bin and second [1/s]
+struct ImpactSpectrum {           // impacts by the energy lost in them, over the averaged revolutions
+  std::vector<double> edges_J;    // bin edges, logarithmic; the first and last bin take what lies outside
+  std::vector<double> ball_ball;  // number of impacts per bin and second [1/s]
   std::vector<double> ball_wall;
 };
 
-struct RunResult {                     // known after the last frame
+struct RunResult {  // known after the last frame
   ImpactSpectrum spectrum;
-  double spin_up_revolutions = 0;      // what "auto" came to
-  bool steady = true;                  // no trend in torque or centre of mass over the averaged revolutions
-  std::string caveat;                  // one sentence for the user where something is not to be trusted, else empty
+  double spin_up_revolutions = 0;  // what "auto" came to
+  bool steady = true;              // no trend in torque or centre of mass over the averaged revolutions
+  std::string caveat;              // one sentence for the user where something is not to be trusted, else empty
 };
 
 // All that a simulation needs to go on bit-identically; the words are the simulator's own affair.

@@ -11,8 +11,8 @@ namespace tumble {
 // have one nearest point, so contacts need neither chords nor rules for shared corners.
 // Vectors are unaligned: the struct is copied and stored freely.
 struct MillShape {
-  double radius = 0;       // R of the shell [m]
-  double tip_radius = 0;   // of the circle through the lifter tips; = radius without lifters [m]
+  double radius = 0;      // R of the shell [m]
+  double tip_radius = 0;  // of the circle through the lifter tips; = radius without lifters [m]
   int lifter_count = 0;
   std::vector<Eigen::Vector2d> lifter;  // lifter 0, corners counter-clockwise [m]; its foot's middle is at angle 0
 

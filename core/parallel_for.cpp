@@ -30,8 +30,7 @@ void parallel_for(std::size_t count, std::size_t grain, const std::function<void
     for (std::size_t r = 0; r < ranges; ++r) body(r * grain, std::min(count, (r + 1) * grain));
     return;
   }
-  tbb::parallel_for(std::size_t{0}, ranges,
-                    [&](std::size_t r) { body(r * grain, std::min(count, (r + 1) * grain)); });
+  tbb::parallel_for(std::size_t{0}, ranges, [&](std::size_t r) { body(r * grain, std::min(count, (r + 1) * grain)); });
 }
 
 }  // namespace tumble

@@ -17,7 +17,7 @@ struct Estimate {
 Estimate mean_of_series(std::span<const double> series);
 
 // The same for directions in degrees: circular mean in [0, 360), error of the deviations from it. NaNs are left out.
-Estimate mean_direction(std::span<const double> degrees);
+Estimate mean_direction(std::span<const double> directions_deg);
 
 // How many standard errors the second half's mean lies from the first half's, correlation allowed for.
 double drift_z(std::span<const double> series);
