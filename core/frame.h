@@ -38,6 +38,10 @@ struct Frame {
   Observables observed;
 };
 
+// The state between two frames of one run, at `time`: cubic through positions and velocities (Hermite), so a flight is
+// exact and slow motion is smooth. Observables are the nearer frame's.
+Frame between(const Frame& a, const Frame& b, double time);
+
 struct RunSetup {  // known before the first frame
   Config config;
   Balls balls;
