@@ -1,1 +1,374 @@
 #include "io/config_file.h"
+
+#include <fmt/format.h>
+#include <toml++/toml.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <sstream>
+#include <system_error>
+
+#include "core/error.h"
+#include "core/units.h"
+#include "io/config_keys.h"
+
+namespace tumble::io {
+namespace {
+
+constexpr std::uintmax_t kLargestFile = 1 << 20;  // [bytes]; a config is a page, anything near this is a mistake
+
+// Parts of the format that this version does not know, so that a file for a later one is refused by name.
+constexpr std::array kLaterProfiles{"wave", "polygon", "swivel"};
+constexpr std::array kLaterKeys{"mill.lifters.points"};
+constexpr std::array kProfiles{LifterProfile::kNone, LifterProfile::kRectangle, LifterProfile::kTriangle,
+                               LifterProfile::kTrapezoid};
+constexpr std::array kLaws{ContactLaw::kLinear};
+constexpr std::array kLaterLaws{"hertz"};
+const std::vector<std::string> kBallKeys{"radius", "mass", "density", "share"};
+
+std::string one_line(std::string_view text) {
+  std::string line(text);
+  std::replace_if(
+      line.begin(), line.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20; }, ' ');
+  return line.size() > 300 ? line.substr(0, 300) + " ..." : line;
+}
+
+std::string article(toml::node_type type) {
+  switch (type) {
+    case toml::node_type::table:
+      return "a table";
+    case toml::node_type::array:
+      return "a list";
+    case toml::node_type::string:
+      return "a string";
+    case toml::node_type::integer:
+      return "a whole number";
+    case toml::node_type::floating_point:
+      return "a number";
+    case toml::node_type::boolean:
+      return "a truth value";
+    default:
+      return "a date or time";
+  }
+}
+
+// What was found, as a message says it: the string "big", 2.5, a table.
+std::string found(const toml::node& node) {
+  if (const auto* s = node.as_string()) return "the string \"" + one_line(s->get()) + "\"";
+  if (const auto* i = node.as_integer()) return fmt::format("{}", i->get());
+  if (const auto* f = node.as_floating_point()) return fmt::format("{}", f->get());
+  if (const auto* b = node.as_boolean()) return b->get() ? "true" : "false";
+  return article(node.type());
+}
+
+template <std::size_t N>
+bool listed(const std::array<const char*, N>& names, const std::string& name) {
+  return std::any_of(names.begin(), names.end(), [&](const char* n) { return name == n; });
+}
+
+std::string joined(const std::vector<std::string>& names) {
+  std::string text;
+  for (const auto& n : names) text += (text.empty() ? "" : ", ") + n;
+  return text;
+}
+
+// Reads one TOML document (the file, or one --set) into a Config.
+class Reader {
+ public:
+  // `line_of_file`: name a line in places; a --set has none.
+  Reader(Config& config, std::string name, bool has_lines)
+      : config_(config), name_(std::move(name)), has_lines_(has_lines) {}
+
+  void read_table(const std::string& section, const toml::table& table) {
+    for (const auto& [name, node] : table) {
+      const std::string path = section.empty() ? std::string(name.str()) : section + "." + std::string(name.str());
+      read_node(path, node);
+    }
+    refuse_both_ways(table, section);
+  }
+
+  void read_node(const std::string& path, const toml::node& node) {
+    if (path == "effects") return refuse_effects(node);
+    if (path.starts_with("effects."))
+      fail(node, path, "effects are not in this version; available: none, remove this key");
+    if (is_section(path)) {
+      if (!node.is_table()) fail(node, path, "found " + found(node) + ", must be a table: [" + path + "]");
+      return read_table(path, *node.as_table());
+    }
+    const Key* key = find_key(path);
+    if (!key) refuse_unknown(path, node);
+    if (!key->excludes.empty()) {
+      clear_field(*find_key(key->excludes), config_);
+      config_.origin.erase(key->excludes);
+    }
+    std::visit([&](const auto& field) { read(*key, field, node); }, key->field);
+    config_.origin[path] = place(node);
+  }
+
+ private:
+  std::string place(const toml::node& node) const {
+    return has_lines_ ? fmt::format("{}:{}", name_, node.source().begin.line) : name_;
+  }
+  [[noreturn]] void fail(const toml::node& node, const std::string& key, const std::string& problem) const {
+    throw InputError(place(node) + ": " + one_line(key), problem);
+  }
+  [[noreturn]] void refuse(const Key& key, const toml::node& node) const {
+    fail(node, key.path, "found " + found(node) + ", must be " + key.wanted);
+  }
+
+  [[noreturn]] void refuse_unknown(const std::string& path, const toml::node& node) const {
+    if (listed(kLaterKeys, path)) fail(node, path, "not in this version; remove it");
+    if (node.is_table()) fail(node, path, "unknown table; did you mean [" + nearest_section(path) + "]?");
+    fail(node, path, "unknown key; did you mean " + nearest_key(path) + "?");
+  }
+
+  void refuse_effects(const toml::node& node) const {
+    const auto* table = node.as_table();
+    if (table && table->empty()) return;
+    if (!table) fail(node, "effects", "found " + found(node) + ", must be tables [effects.NAME]");
+    const auto first = table->cbegin();
+    fail(first->second, "effects." + std::string(first->first.str()),
+         "effects are not in this version; available: none, remove the table");
+  }
+
+  // One table that gives a thing in both ways contradicts itself, whatever the order of its keys.
+  void refuse_both_ways(const toml::table& table, const std::string& section) const {
+    for (const Key& key : config_keys()) {
+      if (key.excludes.empty() || key.path.substr(0, key.path.rfind('.')) != section) continue;
+      const auto* one = table.get(key.path.substr(section.size() + 1));
+      const auto* other = table.get(key.excludes.substr(section.size() + 1));
+      if (one && other && one->source().begin.line >= other->source().begin.line)
+        fail(*one, key.path, "given beside " + key.excludes + "; keep one of the two");
+    }
+  }
+
+  double number(const std::string& path, const std::string& wanted, const toml::node& node) const {
+    double value = kNotGiven;
+    if (const auto* f = node.as_floating_point()) value = f->get();
+    if (const auto* i = node.as_integer()) value = static_cast<double>(i->get());
+    if (!std::isfinite(value)) fail(node, path, "found " + found(node) + ", must be " + wanted);
+    return value;
+  }
+
+  // 148.0 is taken for 148: programs that write numbers often write it so.
+  std::int64_t whole(const Key& key, const toml::node& node) const {
+    if (const auto* i = node.as_integer()) return i->get();
+    const auto* f = node.as_floating_point();
+    if (!f || f->get() != std::floor(f->get()) || std::abs(f->get()) > 9e15) refuse(key, node);
+    return static_cast<std::int64_t>(f->get());
+  }
+
+  int small_whole(const Key& key, const toml::node& node) const {
+    const std::int64_t value = whole(key, node);
+    if (value < std::numeric_limits<int>::min() || value > std::numeric_limits<int>::max()) refuse(key, node);
+    return static_cast<int>(value);
+  }
+
+  void read(const Key& key, double& (*field)(Config&), const toml::node& node) {
+    field(config_) = number(key.path, key.wanted, node);
+  }
+  void read(const Key& key, int& (*field)(Config&), const toml::node& node) { field(config_) = small_whole(key, node); }
+  void read(const Key& key, std::optional<int>& (*field)(Config&), const toml::node& node) {
+    field(config_) = small_whole(key, node);
+  }
+  void read(const Key& key, std::uint64_t& (*field)(Config&), const toml::node& node) {
+    const std::int64_t value = whole(key, node);
+    if (value < 0) refuse(key, node);
+    field(config_) = static_cast<std::uint64_t>(value);
+  }
+  void read(const Key& key, LifterProfile& (*field)(Config&), const toml::node& node) {
+    field(config_) = choice(key, kProfiles, kLaterProfiles, node);
+  }
+  void read(const Key& key, ContactLaw& (*field)(Config&), const toml::node& node) {
+    field(config_) = choice(key, kLaws, kLaterLaws, node);
+  }
+
+  template <typename T, std::size_t N, std::size_t M>
+  T choice(const Key& key, const std::array<T, N>& values, const std::array<const char*, M>& later,
+           const toml::node& node) const {
+    std::vector<std::string> names;
+    for (const T value : values) names.emplace_back(name_of(value));
+    if (!node.is_string()) fail(node, key.path, "found " + found(node) + ", must be one of " + joined(names));
+    const std::string& name = node.as_string()->get();
+    for (const T value : values)
+      if (name == name_of(value)) return value;
+    if (listed(later, name))
+      fail(node, key.path, "\"" + name + "\" is not in this version; available: " + joined(names));
+    fail(node, key.path,
+         "found " + found(node) + ", did you mean \"" + nearest_word(name, names) + "\"? available: " + joined(names));
+  }
+
+  void read(const Key& key, const AutoNumber& field, const toml::node& node) {
+    const bool automatic = node.is_string() && node.as_string()->get() == "auto";
+    field.set_auto(config_, automatic);
+    if (!automatic) field.value(config_) = number(key.path, key.wanted, node);
+  }
+
+  void read(const Key& key, const BallList&, const toml::node& node) {
+    const auto* list = node.as_array();
+    if (!list || list->empty()) refuse(key, node);
+    std::vector<BallClass> balls;
+    for (const toml::node& entry : *list) {
+      const std::string path = fmt::format("{}[{}]", key.path, balls.size());
+      if (!entry.is_table())
+        fail(entry, path, "found " + found(entry) + ", must be { radius = ..., mass = ..., share = ... }");
+      balls.push_back(read_ball(path, *entry.as_table()));
+    }
+    config_.charge.balls = std::move(balls);
+  }
+
+  BallClass read_ball(const std::string& path, const toml::table& table) const {
+    BallClass ball;
+    double density = kNotGiven;
+    for (const auto& [name, node] : table) {
+      const std::string key(name.str()), at = path + "." + key;
+      if (key == "radius")
+        ball.radius = number(at, "a length in m, > 0", node);
+      else if (key == "mass")
+        ball.mass = number(at, "a mass in kg, > 0", node);
+      else if (key == "share")
+        ball.share = number(at, "a number, > 0", node);
+      else if (key == "density")
+        density = number(at, "a density in kg/m3, > 0", node);
+      else
+        fail(node, at, "unknown key; did you mean " + nearest_word(key, kBallKeys) + "? known: " + joined(kBallKeys));
+    }
+    if (const auto* node = table.get("density")) {
+      if (table.contains("mass")) fail(*node, path + ".density", "given beside mass; keep one of the two");
+      if (!table.contains("radius")) fail(*node, path + ".density", "needs the radius too, to give a sphere's mass");
+      if (!(density > 0)) fail(*node, path + ".density", "found " + found(*node) + ", must be a density in kg/m3, > 0");
+      ball.mass = density * 4.0 / 3.0 * kPi * ball.radius * ball.radius * ball.radius;
+    }
+    return ball;
+  }
+
+  Config& config_;
+  std::string name_;
+  bool has_lines_;
+};
+
+std::string trimmed(const std::string& text) {
+  const auto first = text.find_first_not_of(" \t");
+  return first == std::string::npos ? "" : text.substr(first, text.find_last_not_of(" \t") - first + 1);
+}
+
+// A word that needs no quotes on the command line: --set run.spin_up=auto.
+bool bare_word(const std::string& text) {
+  return !text.empty() &&
+         std::all_of(text.begin(), text.end(),
+                     [](unsigned char c) { return std::isalnum(c) || c == '_' || c == '-'; }) &&
+         std::isalpha(static_cast<unsigned char>(text[0])) && text != "true" && text != "false" && text != "nan" &&
+         text != "inf";
+}
+
+void apply_set(Config& config, const std::string& assignment) {
+  const auto equals = assignment.find('=');
+  const std::string path = trimmed(assignment.substr(0, equals));
+  if (equals == std::string::npos || path.empty())
+    throw InputError("--set", "found \"" + one_line(assignment) + "\", must be KEY=VALUE such as mill.speed=0.7");
+  const std::string value = trimmed(assignment.substr(equals + 1));
+  if (value.empty())
+    throw InputError("--set: " + one_line(path), "has no value; give KEY=VALUE such as mill.speed=0.7");
+  try {
+    const toml::table document = toml::parse(bare_word(value) ? "v = \"" + value + "\"" : "v = " + value);
+    if (document.size() != 1) throw InputError("--set: " + one_line(path), "more than one value; repeat --set");
+    Reader(config, "--set", false).read_node(path, *document.get("v"));
+  } catch (const toml::parse_error& e) {
+    throw InputError("--set: " + one_line(path),
+                     "the value \"" + one_line(value) + "\" is not valid TOML: " + one_line(e.description()));
+  }
+}
+
+std::string read_small_file(const std::filesystem::path& path) {
+  std::error_code error;
+  const auto status = std::filesystem::status(path, error);
+  if (status.type() == std::filesystem::file_type::not_found)
+    throw InputError(path.string(), "no such file; give a MILL.toml");
+  if (error) throw InputError(path.string(), "cannot be read: " + error.message());
+  if (std::filesystem::is_directory(status)) throw InputError(path.string(), "is a folder; give a MILL.toml");
+  errno = 0;
+  std::ifstream file(path, std::ios::binary);
+  if (!file) throw InputError(path.string(), std::string("cannot be read: ") + std::strerror(errno));
+  // Read, not asked for its size: a pipe has none.
+  std::string text(kLargestFile + 1, '\0');
+  file.read(text.data(), static_cast<std::streamsize>(text.size()));
+  if (file.bad()) throw InputError(path.string(), std::string("cannot be read: ") + std::strerror(errno));
+  text.resize(static_cast<std::size_t>(file.gcount()));
+  if (text.size() > kLargestFile)
+    throw InputError(path.string(), "is larger than 1 MiB, so hardly a MILL.toml; give the mill's config");
+  return text;
+}
+
+// Text of a field that is in force; empty where there is nothing to write.
+struct Write {
+  const Config& config;
+  Config& fields;  // the same values; the table's functions take a mutable config
+
+  static std::string text(double v) { return std::isnan(v) ? "" : fmt::format("{}", v); }
+  std::string operator()(double& (*f)(Config&)) const { return text(f(fields)); }
+  std::string operator()(int& (*f)(Config&)) const { return std::to_string(f(fields)); }
+  std::string operator()(std::optional<int>& (*f)(Config&)) const {
+    return f(fields) ? std::to_string(*f(fields)) : "";
+  }
+  std::string operator()(std::uint64_t& (*f)(Config&)) const { return std::to_string(f(fields)); }
+  std::string operator()(LifterProfile& (*f)(Config&)) const { return quoted(name_of(f(fields))); }
+  std::string operator()(ContactLaw& (*f)(Config&)) const { return quoted(name_of(f(fields))); }
+  std::string operator()(const AutoNumber& f) const { return f.is_auto(config) ? "\"auto\"" : text(f.value(fields)); }
+  std::string operator()(const BallList&) const {
+    std::string list;
+    for (const BallClass& ball : config.charge.balls) {
+      std::string entry;
+      const auto add = [&](const char* name, double v) {
+        if (!std::isnan(v)) entry += fmt::format("{}{} = {}", entry.empty() ? "" : ", ", name, v);
+      };
+      add("radius", ball.radius);
+      add("mass", ball.mass);
+      add("share", ball.share);
+      list += "  { " + entry + " },\n";
+    }
+    return list.empty() ? "" : "[\n" + list + "]";
+  }
+  static std::string quoted(const char* name) { return std::string("\"") + name + "\""; }
+};
+
+}  // namespace
+
+Config parse_config(const std::string& toml, const std::string& name, const std::vector<std::string>& sets) {
+  Config config;
+  config.file = name;
+  try {
+    const toml::table document = toml::parse(toml, name);
+    Reader(config, name, true).read_table("", document);
+  } catch (const toml::parse_error& e) {
+    throw InputError(fmt::format("{}:{}", name, e.source().begin.line), "not valid TOML: " + one_line(e.description()));
+  }
+  for (const std::string& assignment : sets) apply_set(config, assignment);
+  check(config);
+  return config;
+}
+
+Config read_config(const std::filesystem::path& path, const std::vector<std::string>& sets) {
+  return parse_config(read_small_file(path), path.string(), sets);
+}
+
+std::string to_toml(const Config& config) {
+  Config fields = config;
+  const Write write{config, fields};
+  std::string text, section;
+  for (const Key& key : config_keys()) {
+    const std::string value = std::visit(write, key.field);
+    if (value.empty()) continue;
+    const std::string of = key.path.substr(0, key.path.rfind('.'));
+    if (of != section) {
+      text += fmt::format("{}[{}]\n", text.empty() ? "" : "\n", of);
+      section = of;
+    }
+    text += fmt::format("{} = {}\n", key.path.substr(of.size() + 1), value);
+  }
+  return text;
+}
+
+}  // namespace tumble::io
