@@ -1,1 +1,52 @@
-int main() {}
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <exception>
+#include <new>
+#include <string>
+
+#include "cli/console.h"
+#include "cli/verbs.h"
+#include "core/error.h"
+#include "core/version.h"
+
+namespace {
+
+// One line, whatever was caught: place, what is wrong, what would be right.
+int fail(const std::string& line, int status) {
+  std::string flat = line;
+  for (char& c : flat)
+    if (c == '\n' || c == '\r') c = ' ';
+  while (!flat.empty() && flat.back() == ' ') flat.pop_back();
+  std::fprintf(stderr, "tumble: %s\n", flat.c_str());
+  return status;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app{"tumble: simulate, animate, film back and compare the charge of a tumbling mill", "tumble"};
+  app.set_version_flag("--version", std::string("tumble ") + tumble::kVersion);
+  app.require_subcommand(1);
+  app.failure_message([](const CLI::App*, const CLI::Error& e) { return std::string(e.what()) + "\n"; });
+  tumble::cli::add_run(app);
+  tumble::cli::add_simulate(app);
+  tumble::cli::add_render(app);
+  tumble::cli::add_analyse(app);
+  app.footer("Example: tumble run examples/lab_mill_55cm.toml -o out\nEach verb has its own help: tumble run --help");
+
+  try {
+    tumble::cli::catch_signals();
+    app.parse(argc, argv);
+  } catch (const CLI::Success& e) {  // --help, --version
+    return app.exit(e);
+  } catch (const CLI::ParseError& e) {
+    return fail(std::string(e.what()) + "; see tumble --help", 2);
+  } catch (const tumble::Error& e) {
+    return fail(e.what(), static_cast<int>(e.kind()));
+  } catch (const std::bad_alloc&) {
+    return fail("out of memory; use fewer balls or frames", 1);
+  } catch (const std::exception& e) {
+    return fail(e.what(), 1);
+  }
+  return 0;
+}

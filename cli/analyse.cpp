@@ -1,0 +1,61 @@
+#include <map>
+#include <memory>
+#include <optional>
+
+#include "cli/options.h"
+#include "cli/steps.h"
+#include "cli/verbs.h"
+#include "core/error.h"
+#include "core/parallel_for.h"
+#include "io/config_file.h"
+#include "io/motion_file.h"
+#include "io/output.h"
+
+namespace tumble::cli {
+namespace {
+
+const std::map<std::string, Rotation> kRotations = {{"auto", Rotation::kUnknown},
+                                                    {"clockwise", Rotation::kClockwise},
+                                                    {"counter_clockwise", Rotation::kCounterClockwise}};
+
+struct Options : CommonOptions {
+  fs::path input, output, mill, csv;
+  analysis::FilmOptions film;
+};
+
+void analyse(Options o) {
+  limit_threads(o.threads);
+  std::optional<Config> mill;
+  if (!o.mill.empty()) mill = io::read_config(o.mill);
+  o.film.mill = mill ? &*mill : nullptr;
+  if (!std::isnan(o.film.recorded_fps) && !(o.film.recorded_fps > 0))
+    throw InputError("--recorded-fps", "must be a positive number of frames per second");
+  io::check_output_file(o.output, o.force);
+  if (!o.csv.empty()) io::make_output_folder(o.csv);
+
+  const ChargeMotion motion = measure(o.input, o.film, o);
+  for (const std::string& caveat : motion.caveats) say(o, "note: " + caveat);
+  io::write_motion(o.output, motion);
+  if (!o.csv.empty()) io::write_csv(o.csv, motion);
+  if (o.json) print(io::summary_json(motion));
+}
+
+}  // namespace
+
+void add_analyse(CLI::App& app) {
+  auto o = std::make_shared<Options>();
+  CLI::App* verb = app.add_subcommand("analyse", "Extract the charge's motion from a film, stills or a run file");
+  verb->add_option("input", o->input, "Film, folder of stills, or RUN.h5 (truth)")->required();
+  verb->add_option("-o,--output", o->output, "MOTION.h5 to write")->required();
+  verb->add_option("--mill", o->mill, "MILL.toml with what is known of the mill; may be partial");
+  verb->add_option("--csv", o->csv, "Folder for summary.json, profile.csv, tracks.csv, occupancy.csv");
+  verb->add_option("--recorded-fps", o->film.recorded_fps, "The camera's rate where the file's is another, 1/s");
+  verb->add_option("--rotation", o->film.rotation, "How the mill turns in the film: auto, clockwise, counter_clockwise")
+      ->transform(CLI::CheckedTransformer(kRotations, CLI::ignore_case))
+      ->default_str("auto");
+  add_common(*verb, *o);
+  verb->footer("Example: tumble analyse film.mp4 --mill mill.toml -o motion.h5 --csv results");
+  verb->callback([o] { analyse(*o); });
+}
+
+}  // namespace tumble::cli

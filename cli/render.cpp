@@ -1,0 +1,96 @@
+#include <map>
+#include <memory>
+#include <sstream>
+
+#include "cli/options.h"
+#include "cli/steps.h"
+#include "cli/verbs.h"
+#include "core/error.h"
+#include "core/parallel_for.h"
+#include "io/output.h"
+
+namespace tumble::cli {
+namespace {
+
+const std::map<std::string, render::Colour> kColours = {{"speed", render::Colour::kSpeed},
+                                                        {"size", render::Colour::kSize},
+                                                        {"spin", render::Colour::kSpin},
+                                                        {"steel", render::Colour::kSteel}};
+
+struct Options : CommonOptions {
+  fs::path run, output;
+  std::string size = "1280x720", overlay = "toe,shoulder";
+  render::Colour colour = render::Colour::kSpeed;
+  double fps = 60;
+  FilmPlan plan;
+};
+
+render::Overlay parse_overlay(const std::string& list) {
+  render::Overlay overlay;
+  overlay.toe = overlay.shoulder = overlay.tracks = overlay.velocity = false;
+  std::istringstream words(list);
+  for (std::string word; std::getline(words, word, ',');) {
+    if (word == "toe")
+      overlay.toe = true;
+    else if (word == "shoulder")
+      overlay.shoulder = true;
+    else if (word == "tracks")
+      overlay.tracks = true;
+    else if (word == "velocity")
+      overlay.velocity = true;
+    else if (word != "none" && !word.empty())
+      throw InputError("--overlay", "\"" + word + "\" is unknown; give any of toe,shoulder,tracks,velocity or none");
+  }
+  return overlay;
+}
+
+void render(Options o) {
+  limit_threads(o.threads);
+  parse_size(o.size, "--size", o.plan.format.width, o.plan.format.height);
+  parse_rate(o.fps, "--fps", o.plan.format.fps_numerator, o.plan.format.fps_denominator);
+  if (!(o.plan.style.slow >= 0.01 && o.plan.style.slow <= 1e4))
+    throw InputError("--slow", "must lie between 0.01 and 10000; 1 is true time, 4 is four times slower");
+  o.plan.style.width = o.plan.format.width;
+  o.plan.style.height = o.plan.format.height;
+  o.plan.style.colour = o.colour;
+  o.plan.style.overlay = parse_overlay(o.overlay);
+  o.plan.format.threads = o.threads;
+
+  const bool pictures = !o.output.has_filename() || fs::is_directory(o.output);
+  if (pictures)
+    io::make_output_folder(o.output);
+  else {
+    if (o.output.extension() != ".mp4")
+      throw InputError(o.output.string(), "is no .mp4; give FILM.mp4, or FRAMES/ for a folder of PNG");
+    io::check_output_file(o.output, o.force);
+  }
+  const io::RunReader run(o.run);
+  ChargeMotion truth;
+  if (o.plan.style.overlay.toe || o.plan.style.overlay.shoulder) truth = measure_run(run, o);
+  truth.origin = o.run.string();
+  render_run(run, truth, o.plan, o.output, pictures, o);
+}
+
+}  // namespace
+
+void add_render(CLI::App& app) {
+  auto o = std::make_shared<Options>();
+  CLI::App* verb = app.add_subcommand("render", "Turn a run into a film, or into numbered pictures");
+  verb->add_option("run", o->run, "RUN.h5")->required();
+  verb->add_option("-o,--output", o->output, "FILM.mp4, or FRAMES/ for PNG files")->required();
+  verb->add_option("--size", o->size, "Picture size in pixels")->capture_default_str();
+  verb->add_option("--fps", o->fps, "Film frames per second")->capture_default_str();
+  verb->add_option("--slow", o->plan.style.slow, "How many times slower than true time")->capture_default_str();
+  verb->add_option("--colour", o->colour, "Colour of the balls: speed, size, spin or steel")
+      ->transform(CLI::CheckedTransformer(kColours, CLI::ignore_case))
+      ->default_str("speed");
+  verb->add_option("--overlay", o->overlay, "Any of toe,shoulder,tracks,velocity, or none")->capture_default_str();
+  verb->add_flag("--mirror", o->plan.style.mirror, "See the mill from its other end: it turns clockwise");
+  verb->add_option("--preset", o->plan.format.preset, "x264 preset, ultrafast to veryslow")->capture_default_str();
+  verb->add_option("--crf", o->plan.format.crf, "x264 quality, 0 (lossless) to 51")->capture_default_str();
+  add_common(*verb, *o);
+  verb->footer("Example: tumble render run.h5 -o film.mp4 --slow 4 --overlay toe,shoulder,tracks");
+  verb->callback([o] { render(*o); });
+}
+
+}  // namespace tumble::cli

@@ -1,0 +1,59 @@
+#include <memory>
+
+#include "cli/options.h"
+#include "cli/run_summary.h"
+#include "cli/steps.h"
+#include "cli/verbs.h"
+#include "core/error.h"
+#include "core/parallel_for.h"
+#include "io/config_file.h"
+#include "io/output.h"
+
+namespace tumble::cli {
+namespace {
+
+struct Options : CommonOptions {
+  fs::path config, output;
+  std::vector<std::string> sets;
+  bool resume = false;
+};
+
+void simulate(const Options& o) {
+  limit_threads(o.threads);
+  const Config config = io::read_config(o.config, o.sets);
+  check_complete(config);
+  std::error_code error;
+  if (o.resume && fs::exists(o.output, error)) {
+    // Done is done, provided that it is this run.
+    const io::RunReader run(o.output);
+    if (io::to_toml(run.setup().config) != io::to_toml(config))
+      throw InputError(o.output.string(), "is a complete run of another config; give another output, or --force");
+    say(o, o.output.string() + " is complete");
+    if (o.json) print(to_json(summarise(run), run));
+    return;
+  }
+  io::check_output_file(o.output, o.force);
+  simulate_to_file(config, o.output, o.resume, o);
+  if (o.json) {
+    const io::RunReader run(o.output);
+    print(to_json(summarise(run), run));
+  }
+}
+
+}  // namespace
+
+void add_simulate(CLI::App& app) {
+  auto o = std::make_shared<Options>();
+  CLI::App* verb = app.add_subcommand("simulate", "Simulate the charge of a mill and write its frames");
+  verb->add_option("config", o->config, "MILL.toml")->required();
+  verb->add_option("-o,--output", o->output, "The run file to write, RUN.h5")->required();
+  verb->add_option("--set", o->sets, "Override a key, such as --set mill.speed=0.8; may be repeated")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  verb->add_flag("--resume", o->resume, "Go on with an interrupted run (RUN.h5.part)");
+  add_common(*verb, *o);
+  verb->footer("Example: tumble simulate examples/lab_mill_55cm.toml --set mill.speed=0.8 -o run.h5");
+  verb->callback([o] { simulate(*o); });
+}
+
+}  // namespace tumble::cli

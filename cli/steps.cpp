@@ -1,0 +1,196 @@
+#include "cli/steps.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <exception>
+#include <fstream>
+#include <vector>
+
+#include "core/angle.h"
+#include "core/error.h"
+#include "core/parallel_for.h"
+#include "io/image_file.h"
+#include "io/output.h"
+#include "sim/simulator.h"
+
+namespace tumble::cli {
+namespace {
+
+// The run at any time: keeps the two stored frames round it.
+class RunPlayer {
+ public:
+  explicit RunPlayer(const io::RunReader& run) : run_(run) {}
+
+  Frame at(double time) {
+    const std::vector<double>& times = run_.time();
+    const auto after = std::upper_bound(times.begin(), times.end(), time + 1e-9);
+    const std::size_t i = after == times.begin() ? 0 : static_cast<std::size_t>(after - times.begin()) - 1;
+    load(i);
+    if (i + 1 >= times.size()) return a_;
+    return time - times[i] < 1e-9 ? a_ : between(a_, b_, time);
+  }
+
+ private:
+  void load(std::size_t i) {
+    if (i == index_) return;
+    const bool next = index_ != kNone && i == index_ + 1;
+    index_ = i;
+    if (next)
+      std::swap(a_, b_);
+    else
+      a_ = run_.frame(i);
+    if (i + 1 < run_.frame_count()) b_ = run_.frame(i + 1);
+  }
+
+  static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
+  const io::RunReader& run_;
+  std::size_t index_ = kNone;
+  Frame a_, b_;
+};
+
+// Top of the colour scale: what one ball in a hundred exceeds, so that a single impact does not darken the film.
+double scale_top(const io::RunReader& run, render::Colour colour) {
+  std::vector<double> values;
+  const std::size_t step = std::max<std::size_t>(1, run.frame_count() / 50);
+  for (std::size_t i = 0; i < run.frame_count(); i += step) {
+    const Frame f = run.frame(i);
+    for (std::size_t b = 0; b < f.x.size(); ++b)
+      values.push_back(colour == render::Colour::kSpin ? std::abs(f.spin[b]) : std::hypot(f.vx[b], f.vy[b]));
+  }
+  if (values.empty()) return 1;
+  const auto at = values.begin() + static_cast<std::ptrdiff_t>(values.size() * 99 / 100);
+  std::nth_element(values.begin(), at, values.end());
+  return std::max(*at, 1e-3);
+}
+
+// HDF5's signature: a run file, even one cut short, is to be refused as a run file and not as a film.
+bool looks_like_hdf5(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  char head[8] = {};
+  return file.read(head, sizeof head) && std::memcmp(head, "\x89HDF\r\n\x1a\n", sizeof head) == 0;
+}
+
+struct Marks {
+  double toe_deg = kNotGiven, shoulder_deg = kNotGiven;
+};
+
+Marks marks_at(const ChargeMotion& truth, double time, double frames_per_second) {
+  const auto i = static_cast<std::size_t>(std::lround(time * frames_per_second));
+  if (i >= truth.profile.size()) return {};
+  return {truth.profile[i].toe_deg, truth.profile[i].shoulder_deg};
+}
+
+}  // namespace
+
+void simulate_to_file(const Config& config, const fs::path& output, bool resume, const CommonOptions& options) {
+  std::optional<Checkpoint> checkpoint;
+  if (resume) checkpoint = io::read_checkpoint(output, config);
+  std::unique_ptr<io::RunWriter> writer;
+  ProgressLine line(options, "simulating",
+                    "nothing is lost; go on with: tumble simulate ... -o " + output.string() + " --resume");
+  sim::RunSink sink;
+  sink.setup = [&](const RunSetup& setup) {
+    writer = std::make_unique<io::RunWriter>(
+        checkpoint ? io::RunWriter::resume(output, setup)
+                   : io::RunWriter(output, setup, sim::checkpoint_capacity(setup.config)));
+  };
+  sink.frame = [&](const Frame& frame) { writer->write(frame); };
+  sink.checkpoint = [&](const Checkpoint& c) { writer->write(c); };
+  sink.progress = line.callback();
+  const RunResult result = sim::simulate(config, sink, checkpoint ? &*checkpoint : nullptr);
+  writer->finish(result);
+  if (!result.caveat.empty()) say(options, "note: " + result.caveat);
+}
+
+ChargeMotion measure_run(const io::RunReader& run, const CommonOptions& options) {
+  ProgressLine line(options, "reading the run", "nothing was written");
+  std::size_t next = 0;
+  return analysis::measure_frames(
+      run.setup(),
+      [&](Frame& frame) {
+        if (next >= run.frame_count()) return false;
+        frame = run.frame(next++);
+        return true;
+      },
+      line.callback());
+}
+
+void render_run(const io::RunReader& run, const ChargeMotion& truth, const FilmPlan& plan, const fs::path& output,
+                bool as_pictures, const CommonOptions& options) {
+  if (run.frame_count() == 0) throw InputError(truth.origin, "holds no frames; simulate for longer");
+  const double film_rate = double(plan.format.fps_numerator) / plan.format.fps_denominator;
+  const double span = run.time().back() - run.time().front();
+  const double step = 1 / (film_rate * plan.style.slow);
+  const auto count = static_cast<std::size_t>(std::floor(span / step + 1e-6)) + 1;
+  const double top = scale_top(run, plan.style.colour);
+  const double stored_rate = run.setup().config.run.frames_per_second;
+
+  // Several renderers draw a batch of frames side by side; then the batch is written in order.
+  const std::size_t workers = std::min<std::size_t>(static_cast<std::size_t>(thread_limit()), 8);
+  constexpr std::size_t kEach = 4;
+  std::vector<std::unique_ptr<render::Renderer>> renderers;
+  for (std::size_t w = 0; w < workers; ++w) {
+    renderers.push_back(std::make_unique<render::Renderer>(run.setup(), plan.style));
+    renderers.back()->set_scale(0, top);
+  }
+  std::unique_ptr<io::FilmWriter> film;
+  if (!as_pictures) film = std::make_unique<io::FilmWriter>(output.string(), plan.format);
+
+  ProgressLine line(options, "rendering", "nothing was written under " + output.string());
+  const Progress progress = line.callback();
+  RunPlayer player(run);
+  const bool trails = plan.style.overlay.tracks;
+  constexpr int kTrail = 12;
+  std::vector<Image> images(workers * kEach);
+  std::vector<Frame> frames(workers * kEach);
+  for (std::size_t from = 0; from < count; from += images.size()) {
+    report(progress, double(from) / double(count));
+    const std::size_t n = std::min(images.size(), count - from);
+    std::vector<Frame> before;  // for trails: the film frames before this batch, then the batch itself
+    if (trails)
+      for (std::size_t k = from > kTrail ? from - kTrail : 0; k < from; ++k)
+        before.push_back(player.at(run.time().front() + double(k) * step));
+    const std::size_t lead = before.size();
+    for (std::size_t i = 0; i < n; ++i) frames[i] = player.at(run.time().front() + double(from + i) * step);
+    if (trails) before.insert(before.end(), frames.begin(), frames.begin() + static_cast<std::ptrdiff_t>(n));
+
+    parallel_for(workers, 1, [&](std::size_t w, std::size_t) {
+      for (std::size_t i = w * kEach; i < std::min(n, (w + 1) * kEach); ++i) {
+        const Marks marks = marks_at(truth, frames[i].time - run.time().front(), stored_rate);
+        render::Moment moment{marks.toe_deg, marks.shoulder_deg, run.time(), run.torque(), {}};
+        if (trails) {
+          const std::size_t here = lead + i, first = here > kTrail ? here - kTrail : 0;
+          moment.past = std::span<const Frame>(before).subspan(first, here - first);
+        }
+        images[i] = renderers[w]->draw(frames[i], moment);
+      }
+    });
+    for (std::size_t i = 0; i < n; ++i) {
+      if (film)
+        film->write(images[i]);
+      else
+        io::write_png((output / fmt::format("frame_{:06}.png", from + i)).string(), images[i]);
+    }
+  }
+  if (film) film->finish();
+  report(progress, 1);
+}
+
+ChargeMotion measure(const fs::path& input, const analysis::FilmOptions& film, const CommonOptions& options) {
+  std::error_code error;
+  if (!fs::exists(input, error))
+    throw InputError(input.string(), "does not exist; give a film, a folder or a run file");
+  if (looks_like_hdf5(input)) {
+    ChargeMotion motion = measure_run(io::RunReader(input), options);
+    motion.origin = input.string();
+    return motion;
+  }
+  ProgressLine line(options, "reading the film", "nothing was written");
+  if (fs::is_directory(input, error)) return analysis::measure_stills(input.string(), film, line.callback());
+  return analysis::measure_film(input.string(), film, line.callback());
+}
+
+}  // namespace tumble::cli

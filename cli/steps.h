@@ -1,0 +1,37 @@
+#pragma once
+#include <filesystem>
+#include <functional>
+#include <string>
+
+#include "analysis/charge_motion.h"
+#include "cli/console.h"
+#include "core/charge_motion.h"
+#include "io/film_file.h"
+#include "io/run_file.h"
+#include "render/renderer.h"
+
+// The steps of the one path, each from files to files, shared by the verbs and by `tumble run` that strings them up.
+namespace tumble::cli {
+
+namespace fs = std::filesystem;
+
+// Simulates into `output`; with `resume`, goes on with `output`.part where there is one.
+void simulate_to_file(const Config& config, const fs::path& output, bool resume, const CommonOptions& options);
+
+// The charge's true motion, from a run file.
+ChargeMotion measure_run(const io::RunReader& run, const CommonOptions& options);
+
+struct FilmPlan {
+  render::Style style;
+  io::FilmFormat format;
+};
+
+// Renders a run as a film (`output` is a file) or as numbered PNGs (`output` is a folder that exists). `truth` gives
+// the toe and shoulder marks.
+void render_run(const io::RunReader& run, const ChargeMotion& truth, const FilmPlan& plan, const fs::path& output,
+                bool as_pictures, const CommonOptions& options);
+
+// The one door for all inputs: run file, folder of stills, film.
+ChargeMotion measure(const fs::path& input, const analysis::FilmOptions& film, const CommonOptions& options);
+
+}  // namespace tumble::cli
