@@ -1,1 +1,0 @@
-#include "analysis/charge_motion.h"

@@ -1,0 +1,82 @@
+#include "analysis/charge_statistics.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/statistics.h"
+
+namespace tumble::analysis {
+
+double head_of(std::span<const TrackPoint> balls) {
+  if (balls.empty()) return kNotGiven;
+  std::vector<double> y;
+  for (const TrackPoint& b : balls) y.push_back(b.y);
+  std::sort(y.begin(), y.end());
+  const double at = 0.99 * static_cast<double>(y.size() - 1);
+  const auto low = static_cast<std::size_t>(at);
+  const std::size_t high = std::min(low + 1, y.size() - 1);
+  return y[low] + (at - static_cast<double>(low)) * (y[high] - y[low]);
+}
+
+ChargeStatistics::ChargeStatistics(const MillGeometry& geometry)
+    : geometry_(geometry),
+      ring_(edge_ring(geometry.tip_radius, geometry.mean_diameter)),
+      edges_(geometry.passage_frames),
+      field_(geometry.radius) {}
+
+void ChargeStatistics::add(int frame, double time, double mill_angle_deg, std::span<const TrackPoint> balls,
+                           const std::vector<bool>& hidden) {
+  std::vector<Disc> discs;
+  std::vector<MovingDisc> moving;
+  for (const TrackPoint& b : balls) {
+    discs.push_back({b.x, b.y, b.radius});
+    moving.push_back({b.x, b.y, b.radius, b.vx, b.vy});
+  }
+  RingProfile profile = ring_occupancy(discs, ring_);
+  for (std::size_t i = 0; i < hidden.size() && i < profile.size(); ++i)
+    if (hidden[i]) profile[i] = kNotGiven;
+  edges_.add(profile);
+  field_.add(moving);
+  ProfileRow row;
+  row.frame = frame;
+  row.time = time;
+  row.mill_angle_deg = mill_angle_deg;
+  row.head = head_of(balls);
+  if (!std::isnan(row.head)) heads_.push_back(row.head);
+  profile_.push_back(row);
+  tracks_.insert(tracks_.end(), balls.begin(), balls.end());
+}
+
+void ChargeStatistics::finish(ChargeMotion& motion) {
+  const EdgeEstimates edges = edges_.estimate();
+  motion.toe_deg = edges.toe[kHalf];
+  motion.toe_bulk_deg = edges.toe[kBulk];
+  motion.toe_outer_deg = edges.toe[kOuter];
+  motion.shoulder_deg = edges.shoulder[kHalf];
+  motion.shoulder_bulk_deg = edges.shoulder[kBulk];
+  motion.shoulder_outer_deg = edges.shoulder[kOuter];
+  motion.ring_occupancy = edges.occupancy;
+
+  const std::vector<ChargeEdges> frames = edges_.finish_frames();
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    profile_[i].toe_deg = frames[i].toe[kHalf];
+    profile_[i].shoulder_deg = frames[i].shoulder[kHalf];
+  }
+  motion.profile = std::move(profile_);
+  motion.head = mean_of_series(heads_);
+  motion.field = field_.field();
+  const auto centre = field_.centre_of_circulation(1.5 * geometry_.mean_diameter);
+  motion.centre_of_circulation_x = centre.x;
+  motion.centre_of_circulation_y = centre.y;
+  if (!std::isnan(geometry_.gravity)) {
+    const auto flights = find_flights(tracks_, geometry_.gravity);
+    // At the shell: still within the ring that toe and shoulder are read in. A flight worth the name carries the ball
+    // half a mill radius; the medians hardly move from there on, while below they follow the hops in the shoulder.
+    const FlightAngles angles = flight_angles(flights, ring_.inner, 0.5 * geometry_.radius);
+    motion.departure_deg = angles.departure_deg;
+    motion.impact_toe_deg = angles.impact_toe_deg;
+  }
+  motion.tracks = std::move(tracks_);
+}
+
+}  // namespace tumble::analysis

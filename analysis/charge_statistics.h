@@ -1,0 +1,47 @@
+#pragma once
+#include <span>
+#include <vector>
+
+#include "analysis/flights.h"
+#include "analysis/toe_shoulder.h"
+#include "analysis/velocity_field.h"
+#include "core/charge_motion.h"
+
+namespace tumble::analysis {
+
+// What the ring, the grid and the windows are laid out by. Lengths in the unit of the discs.
+struct MillGeometry {
+  double radius = 0;           // inside the shell
+  double tip_radius = 0;       // of the lifter tips; = radius without lifters
+  double mean_diameter = 0;    // number mean of the balls
+  double passage_frames = 1;   // frames in one lifter passage
+  double gravity = kNotGiven;  // NaN where length or clock is unknown
+};
+
+// Turns balls seen frame by frame, from truth or from pictures, into toe, shoulder, head, fields and flights: one code
+// for both, so that they can differ only in what was seen.
+class ChargeStatistics {
+ public:
+  explicit ChargeStatistics(const MillGeometry& geometry);
+
+  // One frame's balls. `hidden`: bins of the ring that could not be seen.
+  void add(int frame, double time, double mill_angle_deg, std::span<const TrackPoint> balls,
+           const std::vector<bool>& hidden = {});
+
+  // Fills toe, shoulder, head, centre of circulation, departure, impact, ring occupancy, profile, field and tracks.
+  void finish(ChargeMotion& motion);
+
+ private:
+  MillGeometry geometry_;
+  Ring ring_;
+  EdgeStatistics edges_;
+  FieldStatistics field_;
+  std::vector<double> heads_;
+  std::vector<ProfileRow> profile_;
+  std::vector<TrackPoint> tracks_;
+};
+
+// 99th percentile, linear between order statistics; NaN of nothing.
+double head_of(std::span<const TrackPoint> balls);
+
+}  // namespace tumble::analysis
