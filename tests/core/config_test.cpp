@@ -1,0 +1,92 @@
+#include "core/config.h"
+
+#include <gmock/gmock.h>
+
+#include "core/error.h"
+#include "tests/support/mills.h"
+
+namespace tumble {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+std::string complaint(const Config& config) {
+  try {
+    check_complete(config);
+  } catch (const InputError& e) {
+    return e.what();
+  }
+  return "";
+}
+
+TEST(Config, PaperMillHasThePapersNumbers) {
+  Config config = paper_mill();
+  EXPECT_EQ(complaint(config), "");
+  EXPECT_THAT(class_counts(config), ElementsAre(79, 24, 9));
+  EXPECT_NEAR(critical_speed_rpm(config.mill), 57.3, 0.05);  // 42.3 / sqrt(D): the paper's 57.8 takes D - d
+  EXPECT_NEAR(slice_mass(config, {79, 24, 9}), 79 * 0.06 + 24 * 0.195 + 9 * 0.525, 1e-12);
+  // 127 kg of balls in the mill, of 14 kg a slice: the paper's nine slices.
+  config.mill.length = 0.304;
+  config.charge.count.reset();
+  config.charge.filling = 0.385;
+  EXPECT_NEAR(slice_count(config), 9.4, 0.3);
+}
+
+TEST(Config, FillingChoosesTheNearestNumberOfBalls) {
+  Config config = paper_mill();
+  config.charge.count.reset();
+  config.charge.filling = 0.3;
+  const auto counts = class_counts(config);
+  const double found = filling_of(config, counts);
+  const double one_ball = 0.025 * 0.025 / (0.82 * 0.2725 * 0.2725);
+  EXPECT_NEAR(found, 0.3, one_ball / 2);
+}
+
+TEST(Config, OneLayerIsOneSlice) {
+  Config config = paper_mill();
+  EXPECT_EQ(slice_count(config), 1);  // no length
+  config.mill.length = 0.03;          // below 1.5 mean diameters
+  EXPECT_EQ(slice_count(config), 1);
+  config.mill.slices = 9;
+  EXPECT_EQ(slice_count(config), 9);
+}
+
+TEST(Config, RefusesWhatCannotBeAMillAndNamesTheKey) {
+  const auto broken = [](auto&& change) {
+    Config config = paper_mill();
+    change(config);
+    return complaint(config);
+  };
+  EXPECT_THAT(broken([](Config& c) { c.mill.diameter = -0.5; }), HasSubstr("mill.diameter: is -0.5"));
+  EXPECT_THAT(broken([](Config& c) { c.mill.diameter = kNotGiven; }), HasSubstr("mill.diameter: is missing"));
+  EXPECT_THAT(broken([](Config& c) { c.mill.speed_rpm = 40; }), HasSubstr("excludes mill.speed"));
+  EXPECT_THAT(broken([](Config& c) { c.mill.speed = 70; }), HasSubstr("mill.speed_rpm"));  // per cent, or rev/min
+  EXPECT_THAT(broken([](Config& c) { c.mill.lifters.count = 90; }), HasSubstr("overlap"));
+  EXPECT_THAT(broken([](Config& c) { c.mill.lifters.height = 0.3; }), HasSubstr("axis"));
+  EXPECT_THAT(broken([](Config& c) { c.charge.balls[0].radius = 12; }), HasSubstr("does not fit"));
+  EXPECT_THAT(broken([](Config& c) { c.charge.balls.clear(); }), HasSubstr("charge.balls: is missing"));
+  EXPECT_THAT(broken([](Config& c) { c.charge.filling = 0.3; }), HasSubstr("excludes charge.filling"));
+  EXPECT_THAT(broken([](Config& c) { c.charge.count = 400; }), HasSubstr("charge.count"));
+  EXPECT_THAT(broken([](Config& c) {
+                c.charge.count.reset();
+                c.charge.filling = 0.95;
+              }),
+              HasSubstr("at most 0.8"));
+  EXPECT_THAT(broken([](Config& c) { c.contact.restitution = 1.2; }), HasSubstr("contact.restitution"));
+  EXPECT_THAT(broken([](Config& c) { c.origin["contact.friction"] = "my.toml:7", c.contact.friction = -1; }),
+              HasSubstr("my.toml:7: contact.friction"));
+}
+
+TEST(Config, WallTakesTheBallsValuesUnlessItHasItsOwn) {
+  Contact contact;
+  contact.friction = 0.3;
+  contact.wall.restitution = 0.4;
+  const Contact wall = wall_contact(contact);
+  EXPECT_EQ(wall.friction, 0.3);
+  EXPECT_EQ(wall.restitution, 0.4);
+  EXPECT_EQ(wall.normal_stiffness, contact.normal_stiffness);
+}
+
+}  // namespace
+}  // namespace tumble
