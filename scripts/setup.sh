@@ -11,7 +11,7 @@ packages=(g++ cmake ninja-build pkg-config
   libavcodec-dev libavformat-dev libavutil-dev
   libcli11-dev libtomlplusplus-dev nlohmann-json3-dev libfmt-dev)
 if [ "${1:-}" = test ]; then
-  packages+=(libgtest-dev libgmock-dev clang-format chromium)
+  packages+=(libgtest-dev libgmock-dev clang-format chromium chromium-driver curl jq)
 elif [ -n "${1:-}" ]; then
   echo "scripts/setup.sh: \"$1\" is unknown; give nothing, or test" >&2
   exit 2
