@@ -108,12 +108,12 @@ rm -f run.h5.part
 
 # --- Ctrl-C in the middle, then --resume to the same bytes as undisturbed
 long=(mill.toml --quiet --set run.spin_up=0.2 --set run.revolutions=8)
-refused 1 'interrupted.*--resume' stopped.h5 timeout -s INT 1.5 "$tumble" simulate "${long[@]}" -o stopped.h5 --threads 1
+refused 1 'interrupted.*--resume' stopped.h5 timeout --preserve-status -s INT 1.5 "$tumble" simulate "${long[@]}" -o stopped.h5 --threads 1
 [ -e stopped.h5.part ] || fail "Ctrl-C lost the interrupted run"
 "$tumble" simulate "${long[@]}" -o stopped.h5 --resume || fail "resume after Ctrl-C"
 "$tumble" simulate "${long[@]}" -o whole.h5
 cmp -s stopped.h5 whole.h5 || fail "a resumed run differs from an undisturbed one"
-refused 1 'interrupted' film.mp4 timeout -s INT 1 "$tumble" render whole.h5 -o film.mp4 --slow 20 --quiet
+refused 1 'interrupted' film.mp4 timeout --preserve-status -s INT 1 "$tumble" render whole.h5 -o film.mp4 --slow 20 --quiet
 [ ! -e film.mp4.part ] || fail "Ctrl-C left film.mp4.part"
 
 # --- a closed pipe
