@@ -1,1 +1,186 @@
 #include "io/film_file.h"
+
+#include <fmt/format.h>
+
+extern "C" {
+#include <libavcodec/avcodec.h>
+#include <libavformat/avformat.h>
+#include <libavutil/log.h>
+#include <libavutil/opt.h>
+}
+
+#include <algorithm>
+#include <array>
+#include <mutex>
+#include <numeric>
+#include <string_view>
+
+#include "core/error.h"
+#include "io/output.h"
+#include "io/yuv420.h"
+
+namespace tumble::io {
+namespace {
+
+constexpr std::array<std::string_view, 10> kPresets = {"ultrafast", "superfast", "veryfast", "faster",   "fast",
+                                                       "medium",    "slow",      "slower",   "veryslow", "placebo"};
+
+std::string reason(int error) {
+  char text[AV_ERROR_MAX_STRING_SIZE] = "";
+  av_strerror(error, text, sizeof text);
+  return text;
+}
+
+void check(const std::string& path, const FilmFormat& format) {
+  if (format.width < 2 || format.height < 2 || format.width % 2 != 0 || format.height % 2 != 0) {
+    throw InputError(path, fmt::format("a film of {}x{} px cannot be coded as yuv420p; width and height must be even",
+                                       format.width, format.height));
+  }
+  if (format.fps_numerator < 1 || format.fps_denominator < 1) {
+    throw InputError(path, fmt::format("{}/{} frames per second is not a frame rate; both must be at least 1",
+                                       format.fps_numerator, format.fps_denominator));
+  }
+  if (!(format.crf >= 0 && format.crf <= 51)) {
+    throw InputError(path, fmt::format("crf {} is out of range; give 0 (lossless) to 51", format.crf));
+  }
+  if (std::find(kPresets.begin(), kPresets.end(), format.preset) == kPresets.end()) {
+    throw InputError(path, fmt::format("preset '{}' is unknown; there are {}", format.preset,
+                                       fmt::join(kPresets.begin(), kPresets.end(), ", ")));
+  }
+}
+
+}  // namespace
+
+struct FilmWriter::Impl {
+  Impl(const std::string& path, const FilmFormat& wanted) : name(path), format(wanted), file(path) {}
+  ~Impl() {
+    av_packet_free(&packet);
+    av_frame_free(&picture);
+    avcodec_free_context(&encoder);
+    if (muxer) avio_closep(&muxer->pb);
+    avformat_free_context(muxer);
+  }
+
+  // Every call into libav passes here, so that none fails unseen. A full disk shows only in the stream's own state.
+  void expect(int result, const char* what) const {
+    const int error = result < 0 ? result : muxer && muxer->pb ? muxer->pb->error : 0;
+    if (error < 0) throw WorkError(name, fmt::format("{}: {}", what, reason(error)));
+  }
+
+  void open();
+  void encode(const AVFrame* frame);  // null: what the encoder still holds
+
+  std::string name;
+  FilmFormat format;
+  StagedFile file;
+  AVFormatContext* muxer = nullptr;
+  AVCodecContext* encoder = nullptr;
+  AVStream* stream = nullptr;
+  AVFrame* picture = nullptr;
+  AVPacket* packet = nullptr;
+  std::int64_t frames = 0;
+  bool finished = false;
+};
+
+void FilmWriter::Impl::open() {
+  static std::once_flag once;
+  std::call_once(once, [] { av_log_set_level(AV_LOG_QUIET); });  // rooms do not print
+
+  const AVCodec* codec = avcodec_find_encoder_by_name("libx264");
+  if (!codec) throw WorkError(name, "libavcodec has no libx264; install a libavcodec that was built with it");
+  expect(avformat_alloc_output_context2(&muxer, nullptr, "mp4", file.path().c_str()), "cannot be set up as MP4");
+  encoder = avcodec_alloc_context3(codec);
+  stream = avformat_new_stream(muxer, nullptr);
+  packet = av_packet_alloc();
+  picture = av_frame_alloc();
+  if (!encoder || !stream || !packet || !picture) throw WorkError(name, "not enough memory for the encoder");
+
+  const int common = std::gcd(format.fps_numerator, format.fps_denominator);
+  const AVRational rate{format.fps_numerator / common, format.fps_denominator / common};
+  encoder->width = format.width;
+  encoder->height = format.height;
+  encoder->pix_fmt = AV_PIX_FMT_YUV420P;
+  encoder->time_base = av_inv_q(rate);
+  encoder->framerate = rate;
+  encoder->color_primaries = AVCOL_PRI_BT709;
+  encoder->color_trc = AVCOL_TRC_BT709;
+  encoder->colorspace = AVCOL_SPC_BT709;
+  encoder->color_range = AVCOL_RANGE_MPEG;
+  encoder->chroma_sample_location = AVCHROMA_LOC_CENTER;
+  // One thread always: x264's decisions change with its number of threads (motion range, lookahead), and the same
+  // frames must give the same bytes.
+  encoder->thread_count = 1;
+  if (muxer->oformat->flags & AVFMT_GLOBALHEADER) encoder->flags |= AV_CODEC_FLAG_GLOBAL_HEADER;
+
+  AVDictionary* options = nullptr;
+  av_dict_set(&options, "preset", format.preset.c_str(), 0);
+  av_dict_set(&options, "crf", fmt::format("{}", format.crf).c_str(), 0);
+  const int opened = avcodec_open2(encoder, codec, &options);
+  av_dict_free(&options);
+  expect(opened, "x264 does not take this film");
+
+  expect(avcodec_parameters_from_context(stream->codecpar, encoder), "cannot be described");
+  stream->time_base = encoder->time_base;
+  stream->avg_frame_rate = rate;
+
+  picture->format = AV_PIX_FMT_YUV420P;
+  picture->width = format.width;
+  picture->height = format.height;
+  expect(av_frame_get_buffer(picture, 0), "no memory for a picture");
+
+  expect(avio_open(&muxer->pb, file.path().c_str(), AVIO_FLAG_WRITE), "cannot be opened for writing");
+  AVDictionary* layout = nullptr;
+  av_dict_set(&layout, "movflags", "+faststart", 0);
+  const int begun = avformat_write_header(muxer, &layout);
+  av_dict_free(&layout);
+  expect(begun, "its header cannot be written");
+}
+
+void FilmWriter::Impl::encode(const AVFrame* frame) {
+  expect(avcodec_send_frame(encoder, frame), "a frame cannot be encoded");
+  while (true) {
+    const int got = avcodec_receive_packet(encoder, packet);
+    if (got == AVERROR(EAGAIN) || got == AVERROR_EOF) return;
+    expect(got, "a frame cannot be encoded");
+    packet->stream_index = stream->index;
+    packet->duration = 1;  // else the last frame has none and the film ends one frame early
+    av_packet_rescale_ts(packet, encoder->time_base, stream->time_base);
+    expect(av_interleaved_write_frame(muxer, packet), "cannot be written");
+  }
+}
+
+FilmWriter::FilmWriter(const std::string& path, const FilmFormat& format) {
+  check(path, format);
+  impl_ = std::make_unique<Impl>(path, format);
+  impl_->open();
+}
+
+FilmWriter::~FilmWriter() = default;
+
+void FilmWriter::write(const Image& image) {
+  Impl& my = *impl_;
+  if (image.width != my.format.width || image.height != my.format.height) {
+    throw WorkError(my.name, fmt::format("a picture of {}x{} px came into a film of {}x{} px", image.width,
+                                         image.height, my.format.width, my.format.height));
+  }
+  my.expect(av_frame_make_writable(my.picture), "no memory for a picture");
+  yuv420_from_rgba(image, {my.picture->data[0], my.picture->data[1], my.picture->data[2], my.picture->linesize[0],
+                           my.picture->linesize[1], my.picture->linesize[2]});
+  my.picture->pts = my.frames++;
+  my.encode(my.picture);
+}
+
+void FilmWriter::finish() {
+  Impl& my = *impl_;
+  if (my.finished) return;
+  if (my.frames == 0) throw WorkError(my.name, "a film needs at least one frame");
+  my.encode(nullptr);
+  my.expect(av_write_trailer(my.muxer), "its index cannot be written");
+  avio_flush(my.muxer->pb);
+  my.expect(0, "cannot be written");
+  my.expect(avio_closep(&my.muxer->pb), "cannot be closed");
+  my.file.commit();
+  my.finished = true;
+}
+
+}  // namespace tumble::io

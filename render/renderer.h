@@ -24,8 +24,8 @@ struct Style {
   int width = 1280, height = 720;  // [px], even
   Colour colour = Colour::kSpeed;
   Overlay overlay;
-  bool mirror = false;             // seen from the other end: the mill turns clockwise
-  double slow = 1.0;               // how many times slower than true time; stated in the picture
+  bool mirror = false;  // seen from the other end: the mill turns clockwise
+  double slow = 1.0;    // how many times slower than true time; stated in the picture
 };
 
 // What surrounds one frame in time: the caller has the whole run, the renderer looks at it.

@@ -1,0 +1,33 @@
+#pragma once
+#include <span>
+
+#include "core/frame.h"
+#include "render/canvas.h"
+#include "render/renderer.h"
+
+namespace tumble::render {
+
+// What a ball's colour stands for, and where the scale begins and ends.
+struct ColourScale {
+  Colour by = Colour::kSpeed;
+  double low = 0, high = 1;  // [m/s], [rad/s] or, by size, the radii [m]
+  Rgba colour_of(double value) const;
+  const Palette& palette() const;
+};
+
+// The quantity that colours ball i of a frame; NaN by Colour::kSteel.
+double coloured_value(Colour by, const Balls& balls, const Frame& frame, std::size_t i);
+
+void draw_balls(Canvas& canvas, const Balls& balls, const Frame& frame, const ColourScale& scale);
+
+// Paths of the last `seconds`, fading into the past.
+void draw_trails(Canvas& canvas, const Balls& balls, const Frame& frame, std::span<const Frame> past, double seconds,
+                 const ColourScale& scale);
+
+// One arrow a ball, `seconds` of its motion long.
+void draw_velocities(Canvas& canvas, const Balls& balls, const Frame& frame, double seconds);
+
+// An arrow from `a` to `b`, outlined so that it reads on any ground; nothing where it would be a dot.
+void draw_arrow(Canvas& canvas, const Vec2& a, const Vec2& b, double width, Rgba colour);
+
+}  // namespace tumble::render

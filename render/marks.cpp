@@ -1,0 +1,111 @@
+#include "render/marks.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+
+#include "core/angle.h"
+#include "render/axis.h"
+#include "render/charge_view.h"
+
+namespace tumble::render {
+namespace {
+
+double rim_radius(const Canvas& canvas, const MillShape& shape) {
+  return shape.radius * kRimShare * canvas.layout.camera.pixels_per_metre;
+}
+
+Vec2 centre_of(const Canvas& canvas) { return {canvas.layout.camera.centre_u, canvas.layout.camera.centre_v}; }
+
+// The same direction as an angle in the picture: a mirrored mill is seen from its other end.
+double angle_in_picture(const Canvas& canvas, double angle_rad) {
+  return canvas.layout.camera.mirror ? kPi - angle_rad : angle_rad;
+}
+
+void draw_pointer(Canvas& canvas, const MillShape& shape, const char* name, double angle_deg) {
+  const double rim = rim_radius(canvas, shape);
+  const Vec2 out = canvas.layout.camera.direction(radians(angle_deg)), side(-out.y(), out.x());
+  const Vec2 centre = centre_of(canvas);
+  const double foot = rim + canvas.px(2.5), end = foot + canvas.px(11);
+  const Vec2 pointer[] = {centre + foot * out, centre + end * out + canvas.px(4.6) * side,
+                          centre + end * out - canvas.px(4.6) * side};
+  canvas.meshes.convex(pointer, ink::kAccent);
+  // Across the rim's steel, where no ball can be.
+  canvas.meshes.line(centre + rim * out, centre + shape.radius * canvas.layout.camera.pixels_per_metre * out,
+                     canvas.stroke(1.3), ink::kAccent);
+
+  const TextStyle small{canvas.letter(12.5), with_alpha(ink::kAccent, 0.9), Weight::kRegular, Align::kCentre};
+  const TextStyle large{canvas.letter(14.5), ink::kText, Weight::kBold, Align::kCentre};
+  const std::string value = fmt::format("{:.0f}°", wrap_360(std::round(angle_deg)));
+  // The label's box touches the circle around the pointer from outside, then stays inside the picture.
+  const double half_width = std::max(canvas.text.width(name, small), canvas.text.width(value, large)) / 2;
+  const double line = 1.12 * small.size, half_height = (line + large.size) / 2;
+  const double reach = end + canvas.px(5) + std::abs(out.x()) * half_width + std::abs(out.y()) * half_height;
+  Vec2 at = centre + reach * out;
+  const Box& picture = canvas.layout.picture;
+  const double margin = canvas.px(6);
+  at.x() = std::clamp(at.x(), picture.left + margin + half_width, picture.right - margin - half_width);
+  const double top = picture.top + margin + half_height, bottom = picture.bottom - margin - half_height;
+  if (at.y() < top || at.y() > bottom) {  // no room above or below the mill: slide sideways round the pointer
+    at.y() = std::clamp(at.y(), top, bottom);
+    const double away = canvas.px(9) + half_width;
+    at.x() = (centre + end * out).x() + (out.x() < 0 ? -away : away);
+  }
+  canvas.text.add(name, at.x(), at.y() - half_height + 0.85 * small.size, small);
+  canvas.text.add(value, at.x(), at.y() - half_height + line + 0.85 * large.size, large);
+}
+
+}  // namespace
+
+void draw_toe_and_shoulder(Canvas& canvas, const MillShape& shape, double toe_deg, double shoulder_deg) {
+  if (!std::isnan(toe_deg) && !std::isnan(shoulder_deg)) {
+    // The charge lies counter-clockwise from toe to shoulder.
+    const double toe = radians(toe_deg), span = radians(wrap_360(shoulder_deg - toe_deg));
+    const double from = angle_in_picture(canvas, toe), to = angle_in_picture(canvas, toe + span);
+    const double radius = rim_radius(canvas, shape) + canvas.px(6.5), half = canvas.stroke(1.1) / 2;
+    canvas.meshes.ring(centre_of(canvas), radius - half, radius + half, std::min(from, to), std::max(from, to),
+                       with_alpha(ink::kAccent, 0.55));
+  }
+  if (!std::isnan(toe_deg)) draw_pointer(canvas, shape, "toe", toe_deg);
+  if (!std::isnan(shoulder_deg)) draw_pointer(canvas, shape, "shoulder", shoulder_deg);
+}
+
+void draw_rotation(Canvas& canvas, const MillShape& shape, double speed) {
+  if (speed == 0 || std::isnan(speed)) return;
+  const double radius = rim_radius(canvas, shape) + canvas.px(13);
+  const double sense = speed > 0 ? 1.0 : -1.0;
+  const double start = radians(135 - sense * 9), end = radians(135 + sense * 7);  // upper left, where no charge is
+  const double from = angle_in_picture(canvas, start), to = angle_in_picture(canvas, end);
+  const double half = canvas.stroke(2.0) / 2;
+  canvas.meshes.ring(centre_of(canvas), radius - half, radius + half, std::min(from, to), std::max(from, to),
+                     ink::kQuiet);
+  const Vec2 out = canvas.layout.camera.direction(end);
+  const Vec2 ahead = canvas.layout.camera.direction(end + sense * kPi / 2);
+  const Vec2 tip = centre_of(canvas) + radius * out;
+  const Vec2 head[] = {tip + canvas.px(11) * ahead, tip + canvas.px(5.5) * out, tip - canvas.px(5.5) * out};
+  canvas.meshes.convex(head, ink::kQuiet);
+}
+
+void draw_scale_bar(Canvas& canvas, const MillShape& shape, double arrow_seconds) {
+  const Camera& camera = canvas.layout.camera;
+  const double length = round_number_below(0.45 * shape.radius);  // [m]
+  const double width = length * camera.pixels_per_metre;
+  const double left = canvas.layout.picture.left + canvas.px(28);
+  const double baseline = canvas.layout.picture.bottom - canvas.px(30), tick = canvas.px(4);
+  const double w = canvas.stroke(1.6);
+  canvas.meshes.line({left, baseline}, {left + width, baseline}, w, ink::kQuiet);
+  canvas.meshes.line({left, baseline - tick}, {left, baseline + tick}, w, ink::kQuiet);
+  canvas.meshes.line({left + width, baseline - tick}, {left + width, baseline + tick}, w, ink::kQuiet);
+  const TextStyle label{canvas.letter(13), ink::kQuiet, Weight::kRegular, Align::kCentre};
+  const std::string text = length >= 2 ? fmt::format("{:.0f} m", length) : fmt::format("{:.0f} mm", 1000 * length);
+  canvas.text.add(text, left + width / 2, baseline - canvas.px(8), label);
+
+  if (std::isnan(arrow_seconds)) return;
+  const double speed = round_number_below(0.45 * shape.radius / arrow_seconds);
+  const double arrow = speed * arrow_seconds * camera.pixels_per_metre, above = baseline - canvas.px(34);
+  draw_arrow(canvas, {left, above}, {left + arrow, above}, canvas.px(2.0), ink::kText);
+  canvas.text.add(fmt::format("{:g} m/s", speed), left + arrow / 2, above - canvas.px(9), label);
+}
+
+}  // namespace tumble::render
