@@ -35,20 +35,24 @@ class RunWriter {
 // another config or was written by another version.
 std::optional<Checkpoint> read_checkpoint(const std::filesystem::path& path, const Config& config);
 
+// A run that was interrupted between its last frame and its final name: gives it that name. False where there is none.
+bool adopt_complete_run(const std::filesystem::path& path, const Config& config);
+
 class RunReader {
  public:
-  explicit RunReader(const std::filesystem::path& path);  // throws InputError: not there, not HDF5, not a run, truncated
+  explicit RunReader(
+      const std::filesystem::path& path);  // throws InputError: not there, not HDF5, not a run, truncated
   ~RunReader();
   RunReader(RunReader&&) noexcept;
 
   const RunSetup& setup() const;
-  std::size_t frame_count() const;            // whole frames in the file
+  std::size_t frame_count() const;  // whole frames in the file
   Frame frame(std::size_t index) const;
   const std::vector<double>& time() const;    // [s]
   const std::vector<double>& torque() const;  // [N m], of one slice
   const RunResult& result() const;            // defaults where the run was interrupted
   bool complete() const;
-  std::string version() const;                // of the program that wrote it
+  std::string version() const;  // of the program that wrote it
 
  private:
   struct Impl;

@@ -1,0 +1,64 @@
+#include "io/run_layout.h"
+
+namespace tumble::io::run_layout {
+namespace {
+
+template <auto... Members>
+double& reach(Frame& frame) {
+  return (frame.*....*Members);
+}
+template <auto Member>
+constexpr auto kObserved = &reach<&Frame::observed, Member>;
+
+}  // namespace
+
+std::span<const Series> all_series() {
+  using O = Observables;
+  static const std::array series{
+      Series{"observables/torque", "N m", kObserved<&O::torque>},
+      Series{"observables/torque_shear", "N m", kObserved<&O::torque_shear>},
+      Series{"observables/torque_closure", "N m", kObserved<&O::torque_closure>},
+      Series{"observables/power", "W", kObserved<&O::power>},
+      Series{"observables/mill_angle", "rad", &reach<&Frame::mill_angle>},
+      Series{"observables/energy/kinetic", "J", kObserved<&O::kinetic>},
+      Series{"observables/energy/potential", "J", kObserved<&O::potential>},
+      Series{"observables/energy/elastic", "J", kObserved<&O::elastic>},
+      Series{"observables/drive_work", "J", kObserved<&O::drive_work>},
+      Series{"observables/locked_balls", "", kObserved<&O::locked_balls>},
+  };
+  return series;
+}
+
+std::span<const BallArray> all_ball_arrays() {
+  static const std::array arrays{
+      BallArray{"particles/balls/position", "m", &Frame::x, &Frame::y},
+      BallArray{"particles/balls/velocity", "m s-1", &Frame::vx, &Frame::vy},
+      BallArray{"particles/balls/angle", "rad", &Frame::angle, nullptr},
+      BallArray{"particles/balls/angular_velocity", "rad s-1", &Frame::spin, nullptr},
+  };
+  return arrays;
+}
+
+std::string dissipation_path(const std::string& cause) { return "observables/dissipation/" + cause; }
+
+// Word by word, each mixed in by SplitMix64's finalizer: fast, and no single flipped or missing word goes unseen.
+std::int64_t checksum(const Slot& slot, std::span<const double> words) {
+  std::uint64_t sum = 0x7475'6D62'6C65'0001ull;
+  const auto mix = [&](std::uint64_t word) {
+    std::uint64_t z = sum + 0x9E3779B97F4A7C15ull + word;
+    z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9ull;
+    z = (z ^ (z >> 27)) * 0x94D049BB133111EBull;
+    sum = z ^ (z >> 31);
+  };
+  for (const std::int64_t v : {slot.sequence, slot.frames_written, slot.count}) mix(static_cast<std::uint64_t>(v));
+  for (const double w : words) mix(std::bit_cast<std::uint64_t>(w));
+  return std::bit_cast<std::int64_t>(sum);
+}
+
+std::filesystem::path part_of(const std::filesystem::path& path) {
+  std::filesystem::path part = path;
+  part += ".part";
+  return part;
+}
+
+}  // namespace tumble::io::run_layout

@@ -1,0 +1,61 @@
+#pragma once
+#include <array>
+#include <bit>
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/frame.h"
+
+// Names and places in RUN.h5 (docs/run-file.md), shared by its writer and its reader.
+namespace tumble::io::run_layout {
+
+inline constexpr int kFormat = 1;                     // grows when an older reader could not read the file
+inline constexpr std::size_t kSpectrumBins = 256;     // space for an impact spectrum
+inline constexpr std::size_t kCaveatCapacity = 4096;  // [bytes]
+
+inline constexpr const char* kFormatAttribute = "tumble_run_file";  // at the root
+inline constexpr const char* kFramesWritten = "parameters/frames_written";
+inline constexpr const char* kComplete = "parameters/complete";
+inline constexpr const char* kCheckpointWords = "parameters/checkpoint/words";
+inline constexpr const char* kCheckpointSlots = "parameters/checkpoint/slots";
+inline constexpr const char* kStep = "particles/balls/position/step";
+inline constexpr const char* kTime = "particles/balls/position/time";
+
+// A number per frame.
+struct Series {
+  const char* path;
+  const char* unit;
+  double& (*of)(Frame&);
+};
+std::span<const Series> all_series();
+inline double value(const Series& series, const Frame& frame) { return series.of(const_cast<Frame&>(frame)); }
+
+// One or two numbers per ball and frame, kept in single precision.
+struct BallArray {
+  const char* path;
+  const char* unit;
+  std::vector<double> Frame::*first;
+  std::vector<double> Frame::*second;  // nullptr for one number
+  std::size_t components() const { return second ? 2 : 1; }
+};
+std::span<const BallArray> all_ball_arrays();
+
+std::string dissipation_path(const std::string& cause);
+
+// A checkpoint's slot: the words are valid where the checksum says so. Two slots take turns, so a writer that dies in
+// one leaves the other.
+struct Slot {
+  std::int64_t sequence = 0;  // 0: never written
+  std::int64_t frames_written = 0;
+  std::int64_t count = 0;     // of words
+  std::int64_t checksum = 0;  // of the three above and the words
+};
+std::int64_t checksum(const Slot& slot, std::span<const double> words);
+
+// RUN.h5.part
+std::filesystem::path part_of(const std::filesystem::path& path);
+
+}  // namespace tumble::io::run_layout
