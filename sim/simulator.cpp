@@ -1,1 +1,223 @@
 #include "sim/simulator.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "core/units.h"
+#include "sim/packing.h"
+#include "sim/run_state.h"
+
+namespace tumble::sim {
+namespace {
+
+constexpr double kSecondsBetweenCheckpoints = 2;  // of wall time: cheap beside what it saves
+constexpr double kAutoShortest = 10;              // revolutions of spin-up before "auto" may find a mill steady
+constexpr double kAutoLongest = 200;              // and after which it gives up
+constexpr double kAutoZ = 2;                      // drift that "auto" takes for none [standard errors]
+constexpr double kCaveatZ = 3;                    // drift of the averages that is reported
+
+using Clock = std::chrono::steady_clock;
+
+double period(const MillModel& model) { return 2 * kPi / model.speed; }
+
+std::int64_t frame_count(const Config& config, const MillModel& model) {
+  return std::max<std::int64_t>(1, std::llround(config.run.revolutions * period(model) * config.run.frames_per_second));
+}
+
+std::int64_t step_after(const MillModel& model, double revolutions) {
+  return std::llround(revolutions * period(model) / model.time_step);
+}
+
+double revolutions_after(const MillModel& model, std::int64_t step) {
+  return double(step) * model.time_step / period(model);
+}
+
+// Samples of a run's history: at even mill angles from the start.
+std::int64_t sample_step(const MillModel& model, std::size_t sample) {
+  return step_after(model, double(sample + 1) / kSamplesPerRevolution);
+}
+
+void add(Sums& to, const Ledger& from) {
+  to.torque += from.torque;
+  to.torque_shear += from.torque_shear;
+  to.mass_moment += from.mass_moment;
+  to.steps += from.steps;
+}
+
+void advance_to(RunState& run, std::int64_t step) {
+  while (run.mill.step < step) advance(run.mill);
+  Ledger& ledger = run.mill.ledger;
+  add(run.frame, ledger);
+  add(run.sample, ledger);
+  ledger.torque = ledger.torque_shear = ledger.mass_moment = 0;
+  ledger.steps = 0;
+}
+
+void take_sample(RunState& run) {
+  const double steps = double(run.sample.steps);
+  look_for_locked_balls(run.mill, run.locked);
+  run.history.torque.push_back(run.sample.torque / steps);
+  run.history.closure.push_back(run.mill.model.gravity * run.sample.mass_moment / steps);
+  run.history.locked.push_back(run.locked.count);
+  run.sample = {};
+}
+
+// Runs to the step, taking the samples on the way.
+void run_to(RunState& run, std::int64_t step) {
+  for (;;) {
+    const std::int64_t next = sample_step(run.mill.model, run.history.size());
+    if (next > step) break;
+    advance_to(run, next);
+    take_sample(run);
+  }
+  advance_to(run, step);
+}
+
+Frame frame_of(const RunState& run) {
+  const Mill& mill = run.mill;
+  const MillModel& model = mill.model;
+  const Charge& c = mill.charge;
+  Frame f;
+  f.step = mill.step;
+  f.time = double(run.frames_written) * model.steps_per_frame * model.time_step;
+  f.mill_angle = mill_angle(model, mill.step);
+  f.x = c.x;
+  f.y = c.y;
+  f.angle = c.angle;
+  for (std::size_t i = 0; i < c.size(); ++i) {  // at the frame's own time
+    f.vx.push_back(c.vx[i] - c.ax[i]);
+    f.vy.push_back(c.vy[i] - c.ay[i]);
+    f.spin.push_back(c.spin[i] - c.alpha[i]);
+  }
+  Observables& o = f.observed;
+  const double steps = double(run.frame.steps);
+  o.torque = run.frame.torque / steps;
+  o.torque_shear = run.frame.torque_shear / steps;
+  o.torque_closure = model.gravity * run.frame.mass_moment / steps;
+  o.power = o.torque * model.speed;
+  const Energies e = energies_of(mill);
+  o.kinetic = e.kinetic;
+  o.potential = e.potential;
+  o.elastic = e.elastic;
+  o.drive_work = mill.ledger.drive_work;
+  o.dissipation.assign(mill.ledger.dissipated.begin(), mill.ledger.dissipated.end());
+  o.locked_balls = run.locked.count;
+  return f;
+}
+
+// The half of the spin-up that lies nearest is what a judgement of "steady now" rests on.
+bool spin_up_is_over(const Config& config, RunState& run) {
+  const MillModel& model = run.mill.model;
+  if (!config.run.spin_up_auto) return run.mill.step >= step_after(model, config.run.spin_up);
+  const std::size_t samples = run.history.size();
+  const double revolutions = double(samples) / kSamplesPerRevolution;
+  if (samples % kSamplesPerRevolution != 0 || revolutions < kAutoShortest) return false;
+  if (judge(run.history, samples / 2, samples, run.mill.charge.size(), kAutoZ).steady) return true;
+  run.spin_up_gave_up = revolutions >= kAutoLongest;
+  return run.spin_up_gave_up;
+}
+
+class Checkpoints {
+ public:
+  explicit Checkpoints(const RunSink& sink) : sink_(sink), last_(Clock::now()) {}
+  void maybe(const RunState& run) {
+    if (!sink_.checkpoint || Clock::now() - last_ < std::chrono::duration<double>(kSecondsBetweenCheckpoints)) return;
+    sink_.checkpoint({run.frames_written, words_of(run)});
+    last_ = Clock::now();
+  }
+
+ private:
+  const RunSink& sink_;
+  Clock::time_point last_;
+};
+
+void spin_up(const Config& config, RunState& run, const RunSink& sink, Checkpoints& checkpoints) {
+  const MillModel& model = run.mill.model;
+  const double averaged = config.run.revolutions;
+  while (!spin_up_is_over(config, run)) {
+    std::int64_t next = sample_step(model, run.history.size());
+    if (!config.run.spin_up_auto) next = std::min(next, step_after(model, config.run.spin_up));
+    run_to(run, next);
+    const double done = revolutions_after(model, run.mill.step);
+    const double expected = config.run.spin_up_auto ? std::max(3 * kAutoShortest, 1.5 * done) : config.run.spin_up;
+    report(sink.progress, done / (expected + averaged));
+    checkpoints.maybe(run);
+  }
+  run.averaging_from = run.mill.step;
+  run.sampled_before = static_cast<std::int64_t>(run.history.size());
+  run.frame = {};
+  run.mill.ledger.counting_impacts = true;
+}
+
+RunResult result_of(const Config& config, const RunState& run) {
+  const MillModel& model = run.mill.model;
+  RunResult result;
+  result.spin_up_revolutions = revolutions_after(model, run.averaging_from);
+  const double seconds = double(run.mill.step - run.averaging_from) * model.time_step;
+  for (int b = 0; b <= kBins; ++b)
+    result.spectrum.edges_J.push_back(std::pow(10.0, kLowestDecade + double(b) / kBinsPerDecade));
+  for (int b = 0; b < kBins; ++b) {
+    result.spectrum.ball_ball.push_back(run.mill.ledger.impacts.ball_ball[b] / seconds);
+    result.spectrum.ball_wall.push_back(run.mill.ledger.impacts.ball_wall[b] / seconds);
+  }
+
+  const Steadiness s = judge(run.history, static_cast<std::size_t>(run.sampled_before), run.history.size(),
+                             run.mill.charge.size(), kCaveatZ);
+  result.steady = s.steady && !run.spin_up_gave_up;
+  const auto say = [&](const std::string& sentence) { result.caveat += (result.caveat.empty() ? "" : " ") + sentence; };
+  if (run.spin_up_gave_up) say(fmt::format("The mill was not steady after {:g} revolutions of spin-up.", kAutoLongest));
+  if (!s.steady)
+    say(fmt::format(
+        "The averages drift: between the first and the second half torque by {:+.1f} and centre of mass by "
+        "{:+.1f} standard errors, {:+.1f} balls locked meanwhile; spin_up = \"auto\" waits until they are steady.",
+        s.torque_z, s.closure_z, s.locked_change));
+  if (run.locked.count > 0 && speed_fraction(config.mill) < 1)
+    say(fmt::format(
+        "{} of {} balls are locked between the lifters and turn with the shell: an artefact of the plane slice "
+        "that lowers the torque.",
+        run.locked.count, run.mill.charge.size()));
+  return result;
+}
+
+}  // namespace
+
+RunResult simulate(const Config& config, const RunSink& sink, const Checkpoint* resume) {
+  check_complete(config);
+  const MillModel model = make_mill_model(config);
+  const Balls balls = draw_balls(config);
+
+  RunState run;
+  if (resume) {
+    run.mill = make_mill(model, make_charge(balls));
+    restore(run, resume->words);
+  } else {
+    run.mill = make_mill(model, settle(model, place_loosely(config, model, balls), sink.progress));
+  }
+  const std::int64_t frames = frame_count(config, model);
+  if (sink.setup) sink.setup({config, balls, model.time_step, model.speed, frames, dissipation_causes()});
+
+  Checkpoints checkpoints(sink);
+  if (run.averaging_from < 0) spin_up(config, run, sink, checkpoints);
+  const double spun_up = revolutions_after(model, run.averaging_from);
+  while (run.frames_written < frames) {
+    run_to(run, run.averaging_from + (run.frames_written + 1) * model.steps_per_frame);
+    if (sink.frame) sink.frame(frame_of(run));
+    run.frame = {};
+    ++run.frames_written;
+    report(sink.progress, revolutions_after(model, run.mill.step) / (spun_up + config.run.revolutions));
+    checkpoints.maybe(run);
+  }
+  return result_of(config, run);
+}
+
+std::size_t checkpoint_capacity(const Config& config) {
+  std::size_t balls = 0;
+  for (const int n : class_counts(config)) balls += static_cast<std::size_t>(n);
+  const double revolutions = (config.run.spin_up_auto ? kAutoLongest : config.run.spin_up) + config.run.revolutions + 2;
+  return most_words(balls, static_cast<std::size_t>(std::ceil(revolutions * kSamplesPerRevolution)));
+}
+
+}  // namespace tumble::sim

@@ -9,10 +9,10 @@ namespace tumble::sim {
 
 // What the caller wants to see of a run; any may be empty. Called from the calling thread, in this order.
 struct RunSink {
-  std::function<void(const RunSetup&)> setup;  // once, before the first frame (also when resumed)
-  std::function<void(const Frame&)> frame;     // every written frame, after spin-up
+  std::function<void(const RunSetup&)> setup;         // once, before the first frame (also when resumed)
+  std::function<void(const Frame&)> frame;            // every written frame, after spin-up
   std::function<void(const Checkpoint&)> checkpoint;  // now and then, and right after a frame: a run may go on from it
-  Progress progress;                           // share of the whole run, spin-up included
+  Progress progress;                                  // share of the whole run, spin-up included
 };
 
 // Runs the mill. Throws InputError for a config that is incomplete or has an unstable time step, WorkError when the

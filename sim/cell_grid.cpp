@@ -1,0 +1,54 @@
+#include "sim/cell_grid.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tumble::sim {
+
+int CellGrid::column(double x) const { return static_cast<int>((x - left_) * per_metre_); }
+int CellGrid::row(double y) const { return static_cast<int>((y - bottom_) * per_metre_); }
+
+void CellGrid::fill(const Charge& charge, double cell) {
+  const auto [x_low, x_high] = std::minmax_element(charge.x.begin(), charge.x.end());
+  const auto [y_low, y_high] = std::minmax_element(charge.y.begin(), charge.y.end());
+  left_ = *x_low;
+  bottom_ = *y_low;
+  // A few balls in a large mill must not cost a large grid.
+  const double side = std::max(*x_high - left_, *y_high - bottom_);
+  const double cells_across = 2 * std::sqrt(static_cast<double>(charge.size())) + 1;
+  per_metre_ = 1 / std::max(cell, side / cells_across);
+  columns_ = column(*x_high) + 1;
+  rows_ = row(*y_high) + 1;
+
+  start_.assign(static_cast<std::size_t>(columns_) * rows_ + 1, 0);
+  balls_.resize(charge.size());
+  for (std::size_t i = 0; i < charge.size(); ++i) ++start_[row(charge.y[i]) * columns_ + column(charge.x[i]) + 1];
+  for (std::size_t c = 1; c < start_.size(); ++c) start_[c] += start_[c - 1];
+  for (std::size_t i = charge.size(); i-- > 0;) {  // from the back: start_ ends as each cell's end, then its beginning
+    const int c = row(charge.y[i]) * columns_ + column(charge.x[i]);
+    balls_[--start_[c + 1]] = static_cast<int>(i);
+  }
+  // Now start_[c + 1] is where cell c begins; shift back to start_[c].
+  for (std::size_t c = 0; c + 1 < start_.size(); ++c) start_[c] = start_[c + 1];
+  start_.back() = static_cast<int>(charge.size());
+}
+
+void CellGrid::partners_of(const Charge& charge, int i, double skin, std::vector<int>& out) const {
+  out.clear();
+  const double x = charge.x[i], y = charge.y[i], r = charge.radius[i] + skin;
+  const int c = column(x), w = row(y);
+  for (int v = std::max(0, w - 1); v <= std::min(rows_ - 1, w + 1); ++v) {
+    // Neighbouring cells of a row lie side by side in balls_.
+    const int from = start_[v * columns_ + std::max(0, c - 1)];
+    const int to = start_[v * columns_ + std::min(columns_ - 1, c + 1) + 1];
+    for (int k = from; k < to; ++k) {
+      const int j = balls_[k];
+      if (j <= i) continue;
+      const double dx = charge.x[j] - x, dy = charge.y[j] - y, reach = r + charge.radius[j];
+      if (dx * dx + dy * dy < reach * reach) out.push_back(j);
+    }
+  }
+  std::sort(out.begin(), out.end());
+}
+
+}  // namespace tumble::sim

@@ -1,0 +1,36 @@
+#pragma once
+#include <cstddef>
+#include <vector>
+
+#include "core/frame.h"
+
+namespace tumble::sim {
+
+// The balls in the lab frame, a structure of arrays. Between two steps positions belong to the step, velocities to half
+// a step later (leapfrog, Mishra & Rajamani 1992, eqs 4 to 6).
+struct Charge {
+  std::vector<double> x, y;            // centres [m]
+  std::vector<double> angle;           // of the ball's mark, unwrapped [rad]
+  std::vector<double> vx, vy, spin;    // half a step after the positions [m/s, rad/s]
+  std::vector<double> ax, ay, alpha;   // half of what the last step added to the velocities [m/s, rad/s]: v - a is the
+                                       // velocity at the positions' own time, v + a that foreseen for the next
+  std::vector<double> radius, mass;    // [m], [kg]
+  std::vector<double> fx, fy, moment;  // sum of the contact forces [N] and of their moments about the centre [N m]
+
+  std::size_t size() const { return x.size(); }
+};
+
+// Balls at rest at the origin.
+inline Charge make_charge(const Balls& balls) {
+  Charge c;
+  c.radius = balls.radius;
+  c.mass = balls.mass;
+  for (auto* v : {&c.x, &c.y, &c.angle, &c.vx, &c.vy, &c.spin, &c.ax, &c.ay, &c.alpha, &c.fx, &c.fy, &c.moment})
+    v->assign(balls.size(), 0.0);
+  return c;
+}
+
+// Spheres: I = 2/5 m r^2 [kg m2].
+inline double inertia(double mass, double radius) { return 0.4 * mass * radius * radius; }
+
+}  // namespace tumble::sim

@@ -1,0 +1,66 @@
+#include "sim/contact_list.h"
+
+#include <algorithm>
+
+namespace tumble::sim {
+namespace {
+
+void append(ContactList& list, const Contact& contact) {
+  list.contacts.push_back(contact);
+  list.touching.push_back(0);
+  list.states.emplace_back();
+}
+
+void clear(ContactList& list) {
+  list.contacts.clear();
+  list.touching.clear();
+  list.states.clear();
+}
+
+// Both lists are sorted: one walk hands the memory on.
+void carry_over(const ContactList& from, ContactList& to) {
+  const auto before = [](const Contact& a, const Contact& b) { return a.i < b.i || (a.i == b.i && a.j < b.j); };
+  std::size_t t = 0;
+  for (std::size_t f = 0; f < from.size(); ++f) {
+    if (!from.touching[f]) continue;
+    while (t < to.size() && before(to.contacts[t], from.contacts[f])) ++t;
+    if (t == to.size()) return;
+    if (before(from.contacts[f], to.contacts[t])) continue;
+    to.touching[t] = 1;
+    to.states[t] = from.states[f];
+  }
+}
+
+}  // namespace
+
+void renew_ball_contacts(const MillModel& model, const Charge& charge, double skin, ContactSearch& search,
+                         ContactList& list) {
+  ContactList& next = search.next;
+  clear(next);
+  search.grid.fill(charge, 2 * *std::max_element(charge.radius.begin(), charge.radius.end()) + skin);
+  for (int i = 0; i < static_cast<int>(charge.size()); ++i) {
+    search.grid.partners_of(charge, i, skin, search.found);
+    for (const int j : search.found) {
+      const double effective_mass = charge.mass[i] * charge.mass[j] / (charge.mass[i] + charge.mass[j]);
+      append(next, {i, j, charge.radius[i] + charge.radius[j], damping(model.ball, effective_mass)});
+    }
+  }
+  carry_over(list, next);
+  std::swap(list, next);
+}
+
+void renew_wall_contacts(const MillModel& model, const Charge& charge, double mill_angle, double skin,
+                         ContactSearch& search, ContactList& list) {
+  ContactList& next = search.next;
+  clear(next);
+  for (int i = 0; i < static_cast<int>(charge.size()); ++i) {
+    search.found.clear();
+    features_near(model.shell, mill_angle, charge.x[i], charge.y[i], charge.radius[i] + skin, search.found);
+    for (const int feature : search.found)
+      append(next, {i, feature, charge.radius[i], damping(model.wall, charge.mass[i])});
+  }
+  carry_over(list, next);
+  std::swap(list, next);
+}
+
+}  // namespace tumble::sim

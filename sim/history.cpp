@@ -1,0 +1,51 @@
+#include "sim/history.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <span>
+
+#include "core/statistics.h"
+#include "core/units.h"
+
+namespace tumble::sim {
+
+void look_for_locked_balls(const Mill& mill, LockedBalls& locked) {
+  const Charge& c = mill.charge;
+  const double angle = mill_angle(mill.model, mill.step);
+  if (locked.home.size() != c.size()) {
+    locked.home.assign(c.size(), INFINITY);
+    locked.since.assign(c.size(), angle);
+  }
+  const int n = mill.model.shell.lifter_count;
+  const double tolerance = std::min(n > 0 ? 2 * kPi / n : kPi, kPi / 6);
+  locked.count = 0;
+  for (std::size_t i = 0; i < c.size(); ++i) {
+    const double in_mill = std::atan2(c.y[i], c.x[i]) - angle;
+    if (!(std::abs(std::remainder(in_mill - locked.home[i], 2 * kPi)) < tolerance)) {
+      locked.home[i] = in_mill;
+      locked.since[i] = angle;
+    }
+    if (angle - locked.since[i] > 2 * kPi) ++locked.count;
+  }
+}
+
+Steadiness judge(const History& history, std::size_t from, std::size_t to, std::size_t balls, double z_limit) {
+  const auto stretch = [&](const std::vector<double>& v) {
+    return std::span<const double>(v).subspan(from, to - from);
+  };
+  const auto mean = [](std::span<const double> v) {
+    return v.empty() ? 0.0 : std::accumulate(v.begin(), v.end(), 0.0) / double(v.size());
+  };
+  Steadiness s;
+  s.torque_z = drift_z(stretch(history.torque));
+  s.closure_z = drift_z(stretch(history.closure));
+  const auto locked = stretch(history.locked);
+  const std::size_t quarter = locked.size() / 4;
+  s.locked_change = mean(locked.last(quarter)) - mean(locked.first(quarter));
+  s.steady = std::abs(s.torque_z) < z_limit && std::abs(s.closure_z) < z_limit &&
+             std::abs(s.locked_change) < std::max(1.0, 0.01 * double(balls));
+  return s;
+}
+
+}  // namespace tumble::sim

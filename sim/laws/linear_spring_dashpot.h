@@ -1,0 +1,110 @@
+#pragma once
+#include <cmath>
+
+// Linear spring and dashpot with Coulomb friction (Mishra & Rajamani 1992, fig. 1 and eqs 1, 13, 14; tangential spring
+// with history after Cundall & Strack 1979).
+//
+//   normal      F_n = k_n d + C v_n            d overlap [m], v_n closing speed [m/s]; > 0 pushes apart
+//   tangential  F_t = -k_t s,  |F_t| <= mu |F_n|    s tangential displacement since the first touch [m]
+//   damping     C = -2 ln e sqrt(m k_n) / sqrt(ln^2 e + pi^2)     m effective mass [kg] (eq. 13)
+//
+// F_n is not cut off where the dashpot pulls at the end of an impact: eq. 13 gives the restitution e only for the whole
+// half wave of the oscillator. A spring at the Coulomb limit is wound back to it; there is no tangential dashpot.
+// Valid for overlaps far below the radii; the contact lasts pi sqrt(m / k_n), whatever the speed.
+//
+// Energy, exactly as the central differences spend it. A force that acts at step n does the work F_n (d_n+1 - d_n-1) /
+// 2 on the bodies. Summed by parts this is the trapezoid of the force over each step's change of overlap, so that
+// - the normal spring holds k_n d^2 / 2 at every step and nothing is lost in it, but for the first and the last step,
+//   where the trapezoid reaches outside the contact; that share, of second order in the time step, goes to the losses;
+// - the tangential spring loses (mean spring force) x (what it is wound back), and what it holds when the contact
+// parts.
+namespace tumble::sim {
+
+struct LinearSpringDashpot {
+  double normal_stiffness = 0;      // k_n [N/m], > 0
+  double tangential_stiffness = 0;  // k_t [N/m], >= 0
+  double friction = 0;              // mu, >= 0
+  double restitution = 1;           // e, (0, 1]
+};
+
+// Share of critical damping: e = exp(-pi z / sqrt(1 - z^2)).
+inline double damping_ratio(double restitution) {
+  const double l = std::log(restitution);
+  return -l / std::sqrt(l * l + 3.14159265358979323846 * 3.14159265358979323846);
+}
+
+// C [N s/m] of eq. 13.
+inline double damping(const LinearSpringDashpot& law, double effective_mass) {
+  return 2 * damping_ratio(law.restitution) * std::sqrt(effective_mass * law.normal_stiffness);
+}
+
+// What a contact remembers from step to step; all zero while apart.
+struct ContactState {
+  double overlap = 0;  // d [m]
+  double dashpot = 0;  // C v_n [N]
+  double spring = 0;   // s [m]
+  double lost = 0;     // energy lost since the first touch [J]
+};
+
+// Motion of a touching pair at one step.
+struct Touch {
+  double overlap = 0;   // d [m]
+  double closing = 0;   // v_n at this step [m/s]
+  double approach = 0;  // growth of the overlap during the step that led here, from the velocities [m]
+  double slide = 0;     // tangential displacement during that step [m]
+  double damping = 0;   // C of the pair [N s/m]
+};
+
+struct Reaction {
+  double normal = 0;        // F_n [N]
+  double tangential = 0;    // F_t [N]
+  double normal_loss = 0;   // [J] since the last step
+  double sliding_loss = 0;  // [J] since the last step
+};
+
+// `first`: the pair did not touch at the step before.
+inline Reaction touch(const LinearSpringDashpot& law, const Touch& now, bool first, double time_step,
+                      ContactState& state) {
+  const double k_n = law.normal_stiffness, k_t = law.tangential_stiffness;
+  // In its first step a contact exists for the part d / (v dt) of the interval before, in its last for that part of the
+  // interval after: the dashpot's impulse is (1/2 + part) C v dt. Without this the restitution errs in the first order
+  // of the time step, by up to z pi dt / (contact time).
+  const bool at_the_edge = now.overlap < std::abs(now.closing) * time_step;
+  const double dashpot =
+      now.damping *
+      (at_the_edge ? 0.5 * now.closing + std::copysign(now.overlap / time_step, now.closing) : now.closing);
+  Reaction r;
+  r.normal = k_n * now.overlap + dashpot;
+  const double limit = law.friction * std::abs(r.normal);
+  const double wound = state.spring + now.slide;
+  const double spring = k_t * std::abs(wound) > limit ? std::copysign(limit / k_t, wound) : wound;
+  r.tangential = -k_t * spring;
+
+  const double before = first ? now.overlap - now.approach : state.overlap;
+  r.normal_loss = 0.5 * (state.dashpot + dashpot) * (now.overlap - before);
+  if (first) r.normal_loss -= 0.5 * k_n * now.overlap * before;
+  r.sliding_loss = 0.5 * k_t * (state.spring + spring) * (wound - spring);
+
+  state.overlap = now.overlap;
+  state.dashpot = dashpot;
+  state.spring = spring;
+  state.lost += r.normal_loss + r.sliding_loss;
+  return r;
+}
+
+// The losses of the step in which the pair came apart; `now.overlap` < 0. The state's `lost` is then the impact's.
+inline Reaction part(const LinearSpringDashpot& law, const Touch& now, ContactState& state) {
+  Reaction r;
+  r.normal_loss =
+      0.5 * state.dashpot * (now.overlap - state.overlap) + 0.5 * law.normal_stiffness * state.overlap * now.overlap;
+  r.sliding_loss = 0.5 * law.tangential_stiffness * state.spring * (state.spring + now.slide);
+  state.lost += r.normal_loss + r.sliding_loss;
+  return r;
+}
+
+inline double elastic_energy(const LinearSpringDashpot& law, const ContactState& state) {
+  return 0.5 * law.normal_stiffness * state.overlap * state.overlap +
+         0.5 * law.tangential_stiffness * state.spring * state.spring;
+}
+
+}  // namespace tumble::sim

@@ -1,0 +1,146 @@
+#include "sim/run_state.h"
+
+#include <bit>
+
+#include "core/error.h"
+
+namespace tumble::sim {
+namespace {
+
+// Contacts that can touch at once: discs in the plane make at most 3 n pairs (a planar graph); a ball touches at most
+// two lifters and the shell. Some more for balls that overlap.
+constexpr std::size_t kPairsPerBall = 4, kFeaturesPerBall = 4;
+constexpr std::size_t kWordsPerContact = 6;
+constexpr std::size_t kArraysOfBalls = 11;  // charge and locked balls, see `visit`
+constexpr std::size_t kOtherWords = 64 + 2 * kBins;
+
+struct Writer {
+  std::vector<double> words;
+  void operator()(double& value) { words.push_back(value); }
+  void operator()(std::int64_t& value) { words.push_back(std::bit_cast<double>(value)); }
+  void operator()(std::vector<double>& values) {
+    auto n = static_cast<std::int64_t>(values.size());
+    (*this)(n);
+    words.insert(words.end(), values.begin(), values.end());
+  }
+};
+
+struct Reader {
+  const std::vector<double>& words;
+  std::size_t at = 0;
+  double next() {
+    if (at >= words.size()) throw InputError("checkpoint", "is too short for this run; start afresh");
+    return words[at++];
+  }
+  void operator()(double& value) { value = next(); }
+  void operator()(std::int64_t& value) { value = std::bit_cast<std::int64_t>(next()); }
+  void operator()(std::vector<double>& values) {
+    std::int64_t n = 0;
+    (*this)(n);
+    if (n < 0 || static_cast<std::size_t>(n) > words.size() - at)
+      throw InputError("checkpoint", "is damaged; start afresh");
+    values.assign(words.begin() + static_cast<std::ptrdiff_t>(at), words.begin() + static_cast<std::ptrdiff_t>(at) + n);
+    at += static_cast<std::size_t>(n);
+  }
+};
+
+template <class Archive, class Integer>
+void visit_as_int64(Archive& archive, Integer& value) {
+  auto wide = static_cast<std::int64_t>(value);
+  archive(wide);
+  value = static_cast<Integer>(wide);
+}
+
+template <class Archive>
+void visit(Archive& archive, Sums& sums) {
+  archive(sums.torque);
+  archive(sums.torque_shear);
+  archive(sums.mass_moment);
+  visit_as_int64(archive, sums.steps);
+}
+
+// One list for writing and reading, so that they cannot disagree.
+template <class Archive>
+void visit(Archive& archive, RunState& run) {
+  Charge& c = run.mill.charge;
+  for (auto* v : {&c.x, &c.y, &c.angle, &c.vx, &c.vy, &c.spin, &c.ax, &c.ay, &c.alpha}) archive(*v);
+  archive(run.mill.step);
+  archive(run.mill.fastest);
+
+  Ledger& l = run.mill.ledger;
+  archive(l.drive_work);
+  for (double& d : l.dissipated) archive(d);
+  for (double& n : l.impacts.ball_ball) archive(n);
+  for (double& n : l.impacts.ball_wall) archive(n);
+  visit_as_int64(archive, l.counting_impacts);
+
+  for (auto* v : {&run.history.torque, &run.history.closure, &run.history.locked, &run.locked.home, &run.locked.since})
+    archive(*v);
+  visit_as_int64(archive, run.locked.count);
+  visit(archive, run.frame);
+  visit(archive, run.sample);
+  archive(run.averaging_from);
+  archive(run.sampled_before);
+  archive(run.frames_written);
+  visit_as_int64(archive, run.spin_up_gave_up);
+}
+
+void write_touching(Writer& writer, const ContactList& list) {
+  std::int64_t touching = 0;
+  for (const std::uint8_t t : list.touching) touching += t;
+  writer(touching);
+  for (std::size_t k = 0; k < list.size(); ++k) {
+    if (!list.touching[k]) continue;
+    std::int64_t i = list.contacts[k].i, j = list.contacts[k].j;
+    ContactState s = list.states[k];
+    writer(i);
+    writer(j);
+    for (double* v : {&s.overlap, &s.dashpot, &s.spring, &s.lost}) writer(*v);
+  }
+}
+
+// Reach and damping come with the first renewal, as for any contact.
+void read_touching(Reader& reader, ContactList& list, std::int64_t balls) {
+  list = {};
+  std::int64_t touching = 0;
+  reader(touching);
+  for (std::int64_t k = 0; k < touching; ++k) {
+    std::int64_t i = 0, j = 0;
+    ContactState s;
+    reader(i);
+    reader(j);
+    for (double* v : {&s.overlap, &s.dashpot, &s.spring, &s.lost}) reader(*v);
+    if (i < 0 || i >= balls || j < 0) throw InputError("checkpoint", "is damaged; start afresh");
+    list.contacts.push_back({static_cast<int>(i), static_cast<int>(j), 0, 0});
+    list.touching.push_back(1);
+    list.states.push_back(s);
+  }
+}
+
+}  // namespace
+
+std::vector<double> words_of(const RunState& run) {
+  Writer writer;
+  RunState copy = run;  // `visit` is written for both directions and wants to change what it sees
+  visit(writer, copy);
+  write_touching(writer, run.mill.ball_contacts);
+  write_touching(writer, run.mill.wall_contacts);
+  return std::move(writer.words);
+}
+
+void restore(RunState& run, const std::vector<double>& words) {
+  const std::size_t balls = run.mill.charge.size();
+  Reader reader{words};
+  visit(reader, run);
+  if (run.mill.charge.x.size() != balls || run.mill.charge.alpha.size() != balls)
+    throw InputError("checkpoint", "holds another number of balls than the config; start afresh");
+  read_touching(reader, run.mill.ball_contacts, static_cast<std::int64_t>(balls));
+  read_touching(reader, run.mill.wall_contacts, static_cast<std::int64_t>(balls));
+  run.mill.stale = true;
+}
+
+std::size_t most_words(std::size_t balls, std::size_t samples) {
+  return balls * (kArraysOfBalls + kWordsPerContact * (kPairsPerBall + kFeaturesPerBall)) + 3 * samples + kOtherWords;
+}
+
+}  // namespace tumble::sim

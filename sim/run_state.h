@@ -1,0 +1,35 @@
+#pragma once
+#include <cstdint>
+
+#include "sim/history.h"
+#include "sim/mill.h"
+
+namespace tumble::sim {
+
+// Means between two events of a run.
+struct Sums {
+  double torque = 0, torque_shear = 0, mass_moment = 0;
+  long steps = 0;
+};
+
+// A run at one moment: the mill and how far the plan has come. All that a checkpoint must hold.
+struct RunState {
+  Mill mill;
+  History history;
+  LockedBalls locked;
+  Sums frame, sample;                // since the last frame, since the last sample
+  std::int64_t averaging_from = -1;  // step at which the averaged revolutions began; -1 during spin-up
+  std::int64_t sampled_before = 0;   // history samples of the spin-up
+  std::int64_t frames_written = 0;
+  bool spin_up_gave_up = false;  // "auto" reached its longest
+};
+
+// The state as words, and back into a state that was made from the same config. The near lists are not kept: renewing
+// them changes no bit.
+std::vector<double> words_of(const RunState& run);
+void restore(RunState& run, const std::vector<double>& words);
+
+// Upper bound of the number of words for so many balls and history samples.
+std::size_t most_words(std::size_t balls, std::size_t samples);
+
+}  // namespace tumble::sim
