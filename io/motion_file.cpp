@@ -1,1 +1,232 @@
 #include "io/motion_file.h"
+
+#include <algorithm>
+#include <sstream>
+#include <utility>
+
+#include "core/error.h"
+#include "core/version.h"
+#include "io/hdf5.h"
+#include "io/motion_quantities.h"
+#include "io/output.h"
+
+namespace tumble::io {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr int kFormat = 1;  // grows when an older reader could not read the file
+constexpr const char* kFormatAttribute = "tumble_motion_file";
+constexpr std::size_t kMostRows = std::size_t{1} << 30;
+constexpr int kMostCells = 1 << 13;  // of a field's edge
+
+// A column of a table whose rows are structs.
+template <typename Row, typename T>
+struct Column {
+  const char* name;
+  const char* unit;
+  T Row::*of;
+};
+
+// One function says where everything lies; it is walked to write and to read, so the two cannot disagree.
+// `io` is a Writer or a Reader, `m` the ChargeMotion.
+template <typename Io, typename Motion>
+void walk(Io& io, Motion& m) {
+  io.choice("source", m.source, {MotionSource::kRunFile, MotionSource::kFilm, MotionSource::kStills});
+  io.choice("rotation", m.rotation, {Rotation::kUnknown, Rotation::kCounterClockwise, Rotation::kClockwise});
+  io.text("origin", m.origin);
+  io.lines("caveats", m.caveats);
+  io.scalar("mill/lifter_count", "", m.lifter_count);
+  io.scalar("mill/radius", "m", m.mill_radius);
+  io.scalar("mill/tip_radius", "m", m.tip_radius);
+  io.scalar("frames/count", "", m.frames);
+  io.scalar("frames/per_second", "s-1", m.frames_per_second);
+  io.array("frames/duplicated", "", m.duplicated_frames);
+  io.array("frames/dropped", "", m.dropped_frames);
+  for (const Quantity& q : kQuantities) io.estimate(std::string("summary/") + q.name, q.unit, m.*q.of);
+
+  io.scalar("camera/centre_u", "px", m.camera.centre_u_px);
+  io.scalar("camera/centre_v", "px", m.camera.centre_v_px);
+  io.scalar("camera/radius", "px", m.camera.radius_px);
+  io.scalar("camera/metres_per_pixel", "m", m.camera.metres_per_pixel);
+  io.estimate("camera/roll", "deg", m.camera.roll_deg);
+  io.scalar("camera/width", "px", m.camera.width_px);
+  io.scalar("camera/height", "px", m.camera.height_px);
+
+  io.fixed("ring/occupancy", "", m.ring_occupancy);
+  io.table("profile", m.profile, Column{"frame", "", &ProfileRow::frame}, Column{"time", "s", &ProfileRow::time},
+           Column{"mill_angle", "deg", &ProfileRow::mill_angle_deg}, Column{"toe", "deg", &ProfileRow::toe_deg},
+           Column{"shoulder", "deg", &ProfileRow::shoulder_deg}, Column{"head", "m", &ProfileRow::head});
+  io.table("tracks", m.tracks, Column{"frame", "", &TrackPoint::frame}, Column{"id", "", &TrackPoint::id},
+           Column{"time", "s", &TrackPoint::time}, Column{"x", "m", &TrackPoint::x}, Column{"y", "m", &TrackPoint::y},
+           Column{"vx", "m s-1", &TrackPoint::vx}, Column{"vy", "m s-1", &TrackPoint::vy},
+           Column{"radius", "m", &TrackPoint::radius}, Column{"spin", "rad s-1", &TrackPoint::spin},
+           Column{"u", "px", &TrackPoint::u_px}, Column{"v", "px", &TrackPoint::v_px});
+  io.table("torque", m.torque_series, Column{"time", "s", &TorqueRow::time},
+           Column{"torque", "N m", &TorqueRow::torque}, Column{"power", "W", &TorqueRow::power});
+
+  io.scalar("field/cell", "m", m.field.cell);
+  io.scalar("field/cells", "", m.field.n);
+  const int n = m.field.n;
+  io.grid("field/occupancy", "", m.field.occupancy, n);
+  io.grid("field/occupancy_se", "", m.field.occupancy_se, n);
+  io.grid("field/vx", "m s-1", m.field.vx, n);
+  io.grid("field/vy", "m s-1", m.field.vy, n);
+  io.grid("field/vx_se", "m s-1", m.field.vx_se, n);
+  io.grid("field/vy_se", "m s-1", m.field.vy_se, n);
+  io.grid("field/temperature", "m2 s-2", m.field.temperature, n);
+}
+
+struct Writer {
+  hid_t file;
+
+  template <typename T>
+  void scalar(const std::string& path, const char* unit, T value) {
+    hdf5::write_scalar<T>(file, path, value, unit);
+  }
+  void estimate(const std::string& path, const char* unit, const Estimate& e) {
+    scalar(path, unit, e.value);
+    scalar(path + "_se", unit, e.se);
+  }
+  void text(const std::string& path, const std::string& value) { hdf5::make_string(file, path, value); }
+  void lines(const std::string& path, const std::vector<std::string>& values) {
+    std::string all;
+    for (std::string line : values) {
+      std::replace(line.begin(), line.end(), '\n', ' ');
+      all += line + "\n";
+    }
+    text(path, all);
+  }
+  template <typename E>
+  void choice(const std::string& path, E value, std::initializer_list<E>) {
+    text(path, name_of(value));
+  }
+  template <typename T>
+  void array(const std::string& path, const char* unit, const std::vector<T>& values) {
+    hdf5::write_array<T>(file, path, values, {values.size()}, unit);
+  }
+  void fixed(const std::string& path, const char* unit, const std::array<double, 360>& values) {
+    hdf5::write_array<double>(file, path, values, {values.size()}, unit);
+  }
+  void grid(const std::string& path, const char* unit, const std::vector<double>& values, int n) {
+    const auto edge = static_cast<hsize_t>(values.empty() ? 0 : n);
+    hdf5::write_array<double>(file, path, values, {edge, edge}, unit);
+  }
+  template <typename Row, typename... T>
+  void table(const std::string& path, const std::vector<Row>& rows, const Column<Row, T>&... columns) {
+    const auto write = [&](const auto& column) {
+      std::vector<std::decay_t<decltype(std::declval<Row>().*column.of)>> values;
+      values.reserve(rows.size());
+      for (const Row& row : rows) values.push_back(row.*column.of);
+      array(path + "/" + column.name, column.unit, values);
+    };
+    (write(columns), ...);
+  }
+};
+
+struct Reader {
+  hid_t file;
+
+  template <typename T>
+  void scalar(const std::string& path, const char*, T& value) const {
+    value = hdf5::read_scalar<T>(file, path);
+  }
+  void estimate(const std::string& path, const char* unit, Estimate& e) const {
+    scalar(path, unit, e.value);
+    scalar(path + "_se", unit, e.se);
+  }
+  void text(const std::string& path, std::string& value) const { value = hdf5::read_string(file, path); }
+  void lines(const std::string& path, std::vector<std::string>& values) const {
+    std::istringstream all(hdf5::read_string(file, path));
+    for (std::string line; std::getline(all, line);) values.push_back(line);
+  }
+  template <typename E>
+  void choice(const std::string& path, E& value, std::initializer_list<E> known) const {
+    const std::string name = hdf5::read_string(file, path);
+    for (const E one : known)
+      if (name == name_of(one)) {
+        value = one;
+        return;
+      }
+    throw hdf5::Failure(path + " is \"" + name.substr(0, 40) + "\", which this program does not know");
+  }
+  template <typename T>
+  void array(const std::string& path, const char*, std::vector<T>& values) const {
+    values = hdf5::read_array<T>(file, path, kMostRows);
+  }
+  void fixed(const std::string& path, const char*, std::array<double, 360>& values) const {
+    const auto read = hdf5::read_array<double>(file, path, values.size());
+    if (read.size() != values.size())
+      throw hdf5::Failure(path + " has " + std::to_string(read.size()) + " bins, not 360");
+    std::copy(read.begin(), read.end(), values.begin());
+  }
+  void grid(const std::string& path, const char*, std::vector<double>& values, int n) const {
+    if (n < 0 || n > kMostCells) throw hdf5::Failure("field/cells is out of range");
+    const std::size_t cells = static_cast<std::size_t>(n) * static_cast<std::size_t>(n);
+    values = hdf5::read_array<double>(file, path, cells);
+    if (!values.empty() && values.size() != cells) throw hdf5::Failure(path + " does not fit field/cells");
+  }
+  template <typename Row, typename... T>
+  void table(const std::string& path, std::vector<Row>& rows, const Column<Row, T>&... columns) const {
+    bool first = true;
+    const auto read = [&](const auto& column) {
+      std::vector<std::decay_t<decltype(std::declval<Row>().*column.of)>> values;
+      const std::string name = path + "/" + column.name;
+      array(name, column.unit, values);
+      if (std::exchange(first, false)) rows.resize(values.size());
+      if (values.size() != rows.size()) throw hdf5::Failure(name + " has another length than its neighbours");
+      for (std::size_t i = 0; i < rows.size(); ++i) rows[i].*column.of = values[i];
+    };
+    (read(columns), ...);
+  }
+};
+
+}  // namespace
+
+void write_motion(const fs::path& path, const ChargeMotion& motion) {
+  StagedFile staged(path);
+  try {
+    const auto held = hdf5::lock();
+    auto file = hdf5::create_file(staged.path());
+    hdf5::set_attribute(file, kFormatAttribute, std::vector{kFormat});
+    hdf5::set_attribute(file, "version", kVersion);
+    Writer writer{file};
+    walk(writer, motion);
+    hdf5::close_file(std::move(file));
+  } catch (const hdf5::Failure& e) {
+    throw WorkError(path.string(), e.what());
+  }
+  staged.commit();
+}
+
+ChargeMotion read_motion(const fs::path& path) {
+  const auto held = hdf5::lock();
+  const auto file = hdf5::open_input(path, "a motion file");
+  if (H5Aexists(file, kFormatAttribute) <= 0)
+    throw InputError(path.string(), "is an HDF5 file but no motion file; give what analyse has written");
+  try {
+    const int format = hdf5::read_attribute(file, kFormatAttribute).front();
+    if (format != kFormat)
+      throw hdf5::Failure("its format is " + std::to_string(format) + ", this program reads " +
+                          std::to_string(kFormat));
+    ChargeMotion motion;
+    Reader reader{file};
+    walk(reader, motion);
+    return motion;
+  } catch (const hdf5::Failure& e) {
+    throw InputError(path.string(), std::string("is not a whole motion file: ") + e.what());
+  } catch (const std::bad_alloc&) {
+    throw InputError(path.string(), "is too large for this machine's memory");
+  }
+}
+
+bool is_motion_file(const fs::path& path) {
+  if (!hdf5::is_hdf5(path)) return false;
+  const auto held = hdf5::lock();
+  try {
+    return H5Aexists(hdf5::open_file(path, hdf5::Access::kRead), kFormatAttribute) > 0;
+  } catch (const hdf5::Failure&) {
+    return false;
+  }
+}
+
+}  // namespace tumble::io
