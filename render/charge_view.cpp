@@ -45,7 +45,6 @@ void draw_balls(Canvas& canvas, const Balls& balls, const Frame& frame, const Co
     disc.gloss = scale.by == Colour::kSteel ? 1.0 : 0.35;
     canvas.discs.add(disc);
   }
-  canvas.discs.flush();
 }
 
 void draw_trails(Canvas& canvas, const Balls& balls, const Frame& frame, std::span<const Frame> past, double seconds,
@@ -70,7 +69,6 @@ void draw_trails(Canvas& canvas, const Balls& balls, const Frame& frame, std::sp
       to = from;
     }
   }
-  canvas.meshes.flush();
 }
 
 void draw_arrow(Canvas& canvas, const Vec2& a, const Vec2& b, double width, Rgba colour) {
@@ -97,7 +95,6 @@ void draw_velocities(Canvas& canvas, const Balls& balls, const Frame& frame, dou
     const Vec2 to = camera.image_from_mill(frame.x[i] + seconds * frame.vx[i], frame.y[i] + seconds * frame.vy[i]);
     draw_arrow(canvas, from, to, std::clamp(0.13 * radius, 0.7, canvas.px(2.0)), ink::kText);
   }
-  canvas.meshes.flush();
 }
 
 }  // namespace tumble::render

@@ -102,7 +102,7 @@ void draw_scale_bar(Canvas& canvas, const MillShape& shape, double arrow_seconds
   canvas.text.add(text, left + width / 2, baseline - canvas.px(8), label);
 
   if (std::isnan(arrow_seconds)) return;
-  const double speed = round_number_below(0.45 * shape.radius / arrow_seconds);
+  const double speed = round_number_below(0.25 * shape.radius / arrow_seconds);
   const double arrow = speed * arrow_seconds * camera.pixels_per_metre, above = baseline - canvas.px(34);
   draw_arrow(canvas, {left, above}, {left + arrow, above}, canvas.px(2.0), ink::kText);
   canvas.text.add(fmt::format("{:g} m/s", speed), left + arrow / 2, above - canvas.px(9), label);

@@ -49,7 +49,7 @@ Meshes::Meshes(int width, int height) : pipeline_(make_pipeline(kVertex, kFragme
 }
 
 void Meshes::vertex(const Vec2& p, Rgba colour) {
-  Rgba premultiplied = scaled(colour, colour.a / 255.0);
+  const Rgba premultiplied = colour.a == 255 ? colour : scaled(colour, colour.a / 255.0);
   vertices_.push_back({static_cast<float>(p.x()), static_cast<float>(p.y()), premultiplied});
 }
 

@@ -4,7 +4,10 @@
 
 namespace tumble::render {
 
-// Inside, steel rim, liner and lifters with their bolts, turned by the mill angle [rad]. Flushes: balls come above.
-void draw_mill(Canvas& canvas, const MillShape& shape, double mill_angle);
+// What stands still in the picture: the inside and the round steel, which looks the same at any angle.
+void draw_shell(Canvas& canvas, const MillShape& shape);
+
+// What turns: lifters and bolts, at the mill angle [rad].
+void draw_lifters(Canvas& canvas, const MillShape& shape, double mill_angle);
 
 }  // namespace tumble::render

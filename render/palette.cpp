@@ -9,7 +9,7 @@
 namespace tumble::render {
 namespace {
 
-std::uint8_t byte(double value) { return static_cast<std::uint8_t>(std::lround(std::clamp(value, 0.0, 255.0))); }
+std::uint8_t byte(double value) { return static_cast<std::uint8_t>(std::clamp(value, 0.0, 255.0) + 0.5); }
 
 struct Oklab {
   double l = 0, a = 0, b = 0;

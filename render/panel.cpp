@@ -14,7 +14,32 @@ namespace {
 
 constexpr double kBarHeight = 12;  // of the colour bar [units]
 
-TextStyle quiet(const Canvas& canvas, double size) { return {canvas.letter(size), ink::kQuiet}; }
+TextStyle quiet(const Canvas& canvas, double size, Align align = Align::kLeft) {
+  return {canvas.letter(size), ink::kQuiet, Weight::kRegular, align};
+}
+
+// Where things stand in the panel [px]. What is left between the readings and the colour scale belongs to the torque.
+struct Plan {
+  Plan(const Canvas& canvas, Colour by)
+      : unit(canvas.layout.unit),
+        left(canvas.layout.panel.left),
+        right(canvas.layout.panel.right),
+        top(canvas.layout.panel.top) {
+    const double bottom = canvas.layout.panel.bottom;
+    speed_x = left;
+    torque_x = left + 170 * unit;
+    power_x = left + 322 * unit;
+    bar_top = bottom - (21 + kBarHeight) * unit;
+    bar_title = bar_top - 11 * unit;
+    plot_top = y(258);
+    plot_bottom = by == Colour::kSteel ? bottom - 10 * unit : bar_title - 40 * unit;
+  }
+  double y(double units) const { return top + units * unit; }
+
+  double unit, left, right, top;
+  double speed_x, torque_x, power_x;
+  double plot_top, plot_bottom, bar_title, bar_top;
+};
 
 void rule(Canvas& canvas, double y) {
   const Box& panel = canvas.layout.panel;
@@ -22,13 +47,15 @@ void rule(Canvas& canvas, double y) {
 }
 
 // A small label, a value below it, and a remark below that.
-void reading(Canvas& canvas, double x, double y, const std::string& label, const std::string& value,
-             const std::string& unit, const std::string& remark) {
-  canvas.text.add(label, x, y, quiet(canvas, 12.5));
+void value_and_unit(Canvas& canvas, double x, double y, const std::string& value, const std::string& unit) {
   const TextStyle large{canvas.letter(23), ink::kText, Weight::kBold};
   canvas.text.add(value, x, y + canvas.px(28), large);
   canvas.text.add(unit, x + canvas.text.width(value, large) + canvas.px(5), y + canvas.px(28),
                   {canvas.letter(13), ink::kText});
+}
+
+void label_and_remark(Canvas& canvas, double x, double y, const std::string& label, const std::string& remark) {
+  canvas.text.add(label, x, y, quiet(canvas, 12.5));
   canvas.text.add(remark, x, y + canvas.px(47), quiet(canvas, 12.5));
 }
 
@@ -39,8 +66,7 @@ void draw_colour_bar(Canvas& canvas, double left, double right, double top, cons
     const double x0 = left + (right - left) * i / steps, x1 = left + (right - left) * (i + 1) / steps;
     canvas.meshes.rectangle(x0, top, x1, bottom, scale.palette().at((i + 0.5) / steps));
   }
-  TextStyle label = quiet(canvas, 12);
-  label.align = Align::kCentre;
+  const TextStyle label = quiet(canvas, 12, Align::kCentre);
   for (const Tick& tick : ticks(scale.low, scale.high, 5)) {
     const double x = left + (right - left) * (tick.value - scale.low) / (scale.high - scale.low);
     canvas.meshes.line({x, bottom}, {x, bottom + canvas.px(4)}, canvas.stroke(1.0), with_alpha(ink::kQuiet, 0.7));
@@ -123,64 +149,68 @@ std::string charge_in_words(const RunSetup& setup) {
                      100 * area / (kSettledAreaShare * shell));
 }
 
-void draw_panel(Canvas& canvas, const RunSetup& setup, const Frame& frame, const TorqueTrace& trace,
-                const ColourScale& scale, double slow) {
-  const Box& panel = canvas.layout.panel;
-  const auto y = [&](double units) { return panel.top + canvas.px(units); };
+std::optional<TorquePlot> place_torque_plot(Canvas& canvas, const TorqueTrace& trace, Colour by) {
+  if (trace.empty()) return std::nullopt;
+  const Plan plan(canvas, by);
+  return make_torque_plot(canvas, {plan.left, plan.plot_top, plan.right, plan.plot_bottom}, trace);
+}
+
+void draw_still_panel(Canvas& canvas, const Panel& panel, bool pale) {
+  const Plan plan(canvas, panel.scale.by);
   auto& text = canvas.text;
+  text.add(mill_in_words(panel.setup.config), plan.left, plan.y(18), {canvas.letter(21), ink::kText, Weight::kBold});
+  text.add(charge_in_words(panel.setup), plan.left, plan.y(42), quiet(canvas, 13));
+  rule(canvas, plan.y(62));
+  text.add(time_note(panel.slow), plan.right, plan.y(116), quiet(canvas, 13, Align::kRight));
 
-  text.add(mill_in_words(setup.config), panel.left, y(18), {canvas.letter(21), ink::kText, Weight::kBold});
-  text.add(charge_in_words(setup), panel.left, y(42), quiet(canvas, 13));
-  rule(canvas, y(62));
+  const double rpm = rpm_from_rad_s(panel.setup.mill_speed), mean = panel.trace.mean();
+  label_and_remark(canvas, plan.speed_x, plan.y(148), "Speed",
+                   fmt::format("{:.1f} % of critical", 100 * rpm / critical_speed_rpm(panel.setup.config.mill)));
+  value_and_unit(canvas, plan.speed_x, plan.y(148), fmt::format("{:.1f}", rpm), "rev/min");
+  label_and_remark(canvas, plan.torque_x, plan.y(148), "Torque",
+                   std::isnan(mean) ? "of one slice" : fmt::format("mean {:.2f} N m", mean));
+  label_and_remark(canvas, plan.power_x, plan.y(148), "Power",
+                   std::isnan(mean) ? "of one slice" : fmt::format("mean {:.1f} W", mean * panel.setup.mill_speed));
+  rule(canvas, plan.y(214));
 
-  const TextStyle clock{canvas.letter(40), ink::kText, Weight::kBold};
-  const std::string seconds = fmt::format("{:.2f}", frame.time);
-  text.add(seconds, panel.left, y(116), clock);
-  text.add("s", panel.left + text.width(seconds, clock) + canvas.px(8), y(116), {canvas.letter(20), ink::kQuiet});
-  TextStyle note = quiet(canvas, 13);
-  note.align = Align::kRight;
-  text.add(time_note(slow), panel.right, y(116), note);
-  const double revolutions = std::abs(frame.mill_angle) / (2 * kPi);
-  text.add(fmt::format("revolution {:.2f}", revolutions), panel.right, y(95), note);
-
-  const double rpm = rpm_from_rad_s(setup.mill_speed);
-  const double torque = std::isnan(running_torque(trace)) ? frame.observed.torque : running_torque(trace);
-  const double mean = mean_torque(trace), third = panel.width() / 3;
-  reading(canvas, panel.left, y(148), "Speed", fmt::format("{:.1f}", rpm), "rev/min",
-          fmt::format("{:.1f} % of critical", 100 * rpm / critical_speed_rpm(setup.config.mill)));
-  if (!std::isnan(torque)) {
-    reading(canvas, panel.left + 1.16 * third, y(148), "Torque", fmt::format("{:.1f}", torque), "N m",
-            std::isnan(mean) ? "one slice" : fmt::format("mean {:.2f} N m", mean));
-    reading(canvas, panel.left + 2.2 * third, y(148), "Power", fmt::format("{:.1f}", torque * setup.mill_speed), "W",
-            std::isnan(mean) ? "" : fmt::format("mean {:.1f} W", mean * setup.mill_speed));
+  if (panel.plot) {
+    text.add("Torque of one slice, N m", plan.left, plan.y(240), {canvas.letter(13), ink::kText});
+    text.add("running mean over a lifter passage; time, s", plan.right, plan.y(240), quiet(canvas, 11, Align::kRight));
+    draw_torque_curve(canvas, *panel.plot, panel.trace, pale);
   }
-  rule(canvas, y(214));
 
-  // What is left between the readings and the colour scale belongs to the torque's trace.
-  const bool has_scale = scale.by != Colour::kSteel;
-  const double bar_top = panel.bottom - canvas.px(12 + kBarHeight + 9), bar_title = bar_top - canvas.px(11);
-  const double plot_bottom = has_scale ? bar_title - canvas.px(40) : panel.bottom - canvas.px(10);
-  text.add("Torque, N m", panel.left, y(240), {canvas.letter(13), ink::kText});
-  text.add("over time, s; running mean of one lifter passage", panel.right, y(240), [&] {
-    TextStyle style = quiet(canvas, 11.5);
-    style.align = Align::kRight;
-    return style;
-  }());
-  draw_torque_plot(canvas, {panel.left, y(258), panel.right, plot_bottom}, trace);
-
-  if (!has_scale) return;
-  text.add(title_of(scale.by), panel.left, bar_title, {canvas.letter(13), ink::kText});
-  const std::set<double> radii(setup.balls.radius.begin(), setup.balls.radius.end());
+  const ColourScale& scale = panel.scale;
+  if (scale.by == Colour::kSteel) return;
+  text.add(title_of(scale.by), plan.left, plan.bar_title, {canvas.letter(13), ink::kText});
+  const std::set<double> radii(panel.setup.balls.radius.begin(), panel.setup.balls.radius.end());
   if (scale.by == Colour::kSize && radii.size() <= 6) {
-    draw_classes(canvas, panel.left, panel.right, bar_top, scale, radii);
+    draw_classes(canvas, plan.left, plan.right, plan.bar_top, scale, radii);
   } else {
     ColourScale shown = scale;
     if (scale.by == Colour::kSize) {
       shown.low *= 1000;
       shown.high *= 1000;
     }
-    draw_colour_bar(canvas, panel.left, panel.right, bar_top, shown);
+    draw_colour_bar(canvas, plan.left, plan.right, plan.bar_top, shown);
   }
+}
+
+void draw_moving_panel(Canvas& canvas, const Panel& panel, const Frame& frame) {
+  const Plan plan(canvas, panel.scale.by);
+  auto& text = canvas.text;
+  const TextStyle clock{canvas.letter(40), ink::kText, Weight::kBold};
+  const std::string seconds = fmt::format("{:.2f}", frame.time);
+  text.add(seconds, plan.left, plan.y(116), clock);
+  text.add("s", plan.left + text.width(seconds, clock) + canvas.px(8), plan.y(116), {canvas.letter(20), ink::kQuiet});
+  const double revolutions = frame.time * std::abs(panel.setup.mill_speed) / (2 * kPi);
+  text.add(fmt::format("revolution {:.2f}", revolutions), plan.right, plan.y(95), quiet(canvas, 13, Align::kRight));
+
+  const double running = panel.trace.running(frame.time);
+  const double torque = std::isnan(running) ? frame.observed.torque : running;
+  value_and_unit(canvas, plan.torque_x, plan.y(148), std::isnan(torque) ? "–" : fmt::format("{:.1f}", torque), "N m");
+  value_and_unit(canvas, plan.power_x, plan.y(148),
+                 std::isnan(torque) ? "–" : fmt::format("{:.1f}", torque * panel.setup.mill_speed), "W");
+  if (panel.plot) draw_torque_cursor(canvas, *panel.plot, panel.trace, frame.time);
 }
 
 }  // namespace tumble::render

@@ -1,4 +1,5 @@
 #pragma once
+#include <optional>
 #include <string>
 
 #include "core/frame.h"
@@ -8,9 +9,22 @@
 
 namespace tumble::render {
 
-// The column beside the mill: what mill it is, clock, speed, torque with its trace, and the colour scale.
-void draw_panel(Canvas& canvas, const RunSetup& setup, const Frame& frame, const TorqueTrace& trace,
-                const ColourScale& scale, double slow);
+// The column beside the mill: what mill it is, clock, speed, torque with its trace, and the colour scale. It is drawn
+// in two parts: what stands still during a film, and what moves.
+struct Panel {
+  const RunSetup& setup;
+  const TorqueTrace& trace;
+  std::optional<TorquePlot> plot;  // where there is a trace
+  ColourScale scale;
+  double slow = 1;
+};
+
+// Where the torque's plot lies, if there is a trace.
+std::optional<TorquePlot> place_torque_plot(Canvas& canvas, const TorqueTrace& trace, Colour by);
+
+// `pale`: the torque's curve as what is still to come, or as what has been.
+void draw_still_panel(Canvas& canvas, const Panel& panel, bool pale);
+void draw_moving_panel(Canvas& canvas, const Panel& panel, const Frame& frame);
 
 // How time runs in the film, in words: "true time", "3.3 x slower".
 std::string time_note(double slow);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "core/error.h"
 #include "core/mill_shape.h"
@@ -15,6 +16,7 @@
 #include "render/mill_view.h"
 #include "render/offscreen_context.h"
 #include "render/panel.h"
+#include "render/still_layer.h"
 
 namespace tumble::render {
 namespace {
@@ -61,19 +63,64 @@ struct Renderer::Impl {
     const CurrentContext current(context);
     canvas = std::make_unique<Canvas>(style.width, style.height,
                                       make_layout(style.width, style.height, shape, style.overlay.text, style.mirror));
+    coming = std::make_unique<StillLayer>(style.width, style.height);
+    been = std::make_unique<StillLayer>(style.width, style.height);
+    glViewport(0, 0, style.width, style.height);
     glEnable(GL_BLEND);
     glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);  // colours are premultiplied
     glDisable(GL_DEPTH_TEST);
     glDisable(GL_DITHER);
   }
 
+  void flush() {
+    canvas->meshes.flush();
+    canvas->discs.flush();
+    canvas->text.flush();
+  }
+  Panel panel() const { return {setup, trace, plot, scale, style.slow}; }
+  double arrow_seconds() const { return 0.11 * natural_time(); }
+  double natural_time() const { return std::sqrt(shape.radius / kGravity); }  // of a fall in this mill [s]
+
+  void paint_still(StillLayer& layer, bool pale);
+  void paint_still_layers(const Moment& moment);
+
   RunSetup setup;
   Style style;
   MillShape shape;
   OffscreenContext context;
   ColourScale scale;
+  TorqueTrace trace;
+  std::optional<TorquePlot> plot;
+  bool is_painted = false;  // the still layers, for the scale and trace above
   std::unique_ptr<Canvas> canvas;
+  std::unique_ptr<StillLayer> coming, been;  // with the torque's curve pale, and bright
 };
+
+void Renderer::Impl::paint_still(StillLayer& layer, bool pale) {
+  const auto share = [](std::uint8_t channel) { return static_cast<float>(channel) / 255.0f; };
+  glClearColor(share(ink::kGround.r), share(ink::kGround.g), share(ink::kGround.b), 1.0f);
+  glClear(GL_COLOR_BUFFER_BIT);
+  draw_shell(*canvas, shape);
+  if (style.overlay.text) {
+    draw_rotation(*canvas, shape, setup.mill_speed);
+    draw_scale_bar(*canvas, shape, style.overlay.velocity ? arrow_seconds() : kNotGiven);
+    draw_still_panel(*canvas, panel(), pale);
+  }
+  flush();
+  layer.capture();
+}
+
+void Renderer::Impl::paint_still_layers(const Moment& moment) {
+  if (is_painted && trace.is_of(moment.torque_time, moment.torque)) return;
+  // The running mean is taken over one lifter passage; a smooth shell has none, and gets an 18th of a revolution.
+  const int passages = shape.lifter_count > 0 ? shape.lifter_count : 18;
+  const double passage = setup.mill_speed == 0 ? 0 : 2 * kPi / (std::abs(setup.mill_speed) * passages);
+  trace = TorqueTrace(moment.torque_time, moment.torque, passage);
+  plot = place_torque_plot(*canvas, trace, style.colour);
+  if (plot) paint_still(*been, false);
+  paint_still(*coming, true);
+  is_painted = true;
+}
 
 Renderer::Renderer(const RunSetup& setup, const Style& style) : impl_(std::make_unique<Impl>(setup, style)) {}
 Renderer::~Renderer() = default;
@@ -81,41 +128,31 @@ Renderer::~Renderer() = default;
 void Renderer::set_scale(double low, double high) {
   impl_->scale.low = low;
   impl_->scale.high = high;
+  impl_->is_painted = false;
 }
 
 const Image& Renderer::draw(const Frame& frame, const Moment& moment) {
   Impl& my = *impl_;
   const Overlay& overlay = my.style.overlay;
-  const double natural_time = std::sqrt(my.shape.radius / kGravity);  // of a fall in this mill [s]
   {
     const CurrentContext current(my.context);
     Canvas& canvas = *my.canvas;
-    const Rgba ground = ink::kGround;
-    glViewport(0, 0, my.style.width, my.style.height);
-    glClearColor(static_cast<float>(ground.r) / 255.0f, static_cast<float>(ground.g) / 255.0f,
-                 static_cast<float>(ground.b) / 255.0f, 1.0f);
-    glClear(GL_COLOR_BUFFER_BIT);
-
-    draw_mill(canvas, my.shape, frame.mill_angle);
-    if (overlay.tracks) draw_trails(canvas, my.setup.balls, frame, moment.past, 1.2 * natural_time, my.scale);
+    my.paint_still_layers(moment);
+    my.coming->restore();
+    if (overlay.text && my.plot) {
+      const Box& box = my.plot->box;
+      my.been->restore({box.left, box.top, std::min(my.plot->x_of(frame.time), box.right), box.bottom});
+    }
+    draw_lifters(canvas, my.shape, frame.mill_angle);
+    if (overlay.tracks) draw_trails(canvas, my.setup.balls, frame, moment.past, 1.2 * my.natural_time(), my.scale);
+    canvas.meshes.flush();
     draw_balls(canvas, my.setup.balls, frame, my.scale);
-    const double arrow_seconds = 0.11 * natural_time;
-    if (overlay.velocity) draw_velocities(canvas, my.setup.balls, frame, arrow_seconds);
-
+    canvas.discs.flush();
+    if (overlay.velocity) draw_velocities(canvas, my.setup.balls, frame, my.arrow_seconds());
     draw_toe_and_shoulder(canvas, my.shape, overlay.toe ? moment.toe_deg : kNotGiven,
                           overlay.shoulder ? moment.shoulder_deg : kNotGiven);
-    if (overlay.text) {
-      draw_rotation(canvas, my.shape, my.setup.mill_speed);
-      draw_scale_bar(canvas, my.shape, overlay.velocity ? arrow_seconds : kNotGiven);
-      // The running mean is taken over one lifter passage; a smooth shell has none, and gets an 18th of a revolution.
-      const int passages = my.shape.lifter_count > 0 ? my.shape.lifter_count : 18;
-      const double passage = my.setup.mill_speed == 0 ? 0 : 2 * kPi / (std::abs(my.setup.mill_speed) * passages);
-      const TorqueTrace trace{moment.torque_time, moment.torque, passage, frame.time};
-      draw_panel(canvas, my.setup, frame, trace, my.scale, my.style.slow);
-    }
-    canvas.meshes.flush();
-    canvas.discs.flush();
-    canvas.text.flush();
+    if (overlay.text) draw_moving_panel(canvas, my.panel(), frame);
+    my.flush();
   }
   return my.context.image();
 }
