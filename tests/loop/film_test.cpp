@@ -1,0 +1,137 @@
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <vector>
+
+#include "analysis/charge_motion.h"
+#include "core/angle.h"
+#include "tests/support/filmed_mill.h"
+#include "tests/support/mills.h"
+
+// The whole path: a mill is simulated, filmed, and the film alone must give back what the simulation knew.
+// Bounds are those the project promises for its own films (docs/film-analysis.md).
+namespace tumble {
+namespace {
+
+struct Case {
+  double speed;
+  LifterProfile profile;
+  bool mirror;
+};
+
+std::string name(const testing::TestParamInfo<Case>& info) {
+  return std::string(name_of(info.param.profile)) + "_" + std::to_string(std::lround(info.param.speed * 100)) +
+         (info.param.mirror ? "_clockwise" : "_counter_clockwise");
+}
+
+Config mill_of(const Case& c, double revolutions, double frames_per_second) {
+  Config config = paper_mill();
+  config.mill.speed = c.speed;
+  config.mill.lifters.profile = c.profile;
+  config.run.spin_up = 1;
+  config.run.revolutions = revolutions;
+  config.run.frames_per_second = frames_per_second;
+  return config;
+}
+
+ChargeMotion truth_of(const SimulatedMill& mill) {
+  std::size_t next = 0;
+  return analysis::measure_frames(mill.setup, [&](Frame& f) {
+    if (next == mill.frames.size()) return false;
+    f = mill.frames[next++];
+    return true;
+  });
+}
+
+// What a laboratory knows of its mill: the drawing and the ball sizes.
+Config drawing_of(const Config& config) {
+  Config drawing;
+  drawing.mill.diameter = config.mill.diameter;
+  drawing.mill.lifters = config.mill.lifters;
+  drawing.charge.balls = config.charge.balls;
+  return drawing;
+}
+
+class Film {
+ public:
+  Film(const SimulatedMill& mill, bool mirror, int fps) {
+    render::Style style;
+    style.mirror = mirror;
+    film(mill, style, fps, path());
+  }
+  ~Film() { std::filesystem::remove(path()); }
+  std::string path() const { return testing::TempDir() + "film_" + std::to_string(id_) + ".mp4"; }
+
+ private:
+  static inline int last_ = 0;
+  int id_ = ++last_ + 1000 * static_cast<int>(getpid() % 100000);
+};
+
+class FilmedMill : public testing::TestWithParam<Case> {};
+
+TEST_P(FilmedMill, GivesBackToeShoulderAndSpeed) {
+  const Case& c = GetParam();
+  const SimulatedMill mill = simulate_in_memory(mill_of(c, 2, 60));
+  const ChargeMotion truth = truth_of(mill);
+  const Film film(mill, c.mirror, 60);
+  const Config drawing = drawing_of(mill.setup.config);
+  analysis::FilmOptions options;
+  options.mill = &drawing;
+  const ChargeMotion seen = analysis::measure_film(film.path(), options);
+
+  EXPECT_EQ(seen.rotation, c.mirror ? Rotation::kClockwise : Rotation::kCounterClockwise);
+  EXPECT_NEAR(seen.speed_rpm.value / truth.speed_rpm.value, 1, 0.005);
+  EXPECT_LT(std::abs(wrap_180(seen.toe_deg.value - truth.toe_deg.value)), 2)
+      << seen.toe_deg.value << " for " << truth.toe_deg.value;
+  EXPECT_LT(std::abs(wrap_180(seen.shoulder_deg.value - truth.shoulder_deg.value)), 2)
+      << seen.shoulder_deg.value << " for " << truth.shoulder_deg.value;
+  EXPECT_NEAR(seen.filling.value / truth.filling.value, 1, 0.03);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    All, FilmedMill,
+    testing::Values(Case{0.5, LifterProfile::kRectangle, false}, Case{0.5, LifterProfile::kTriangle, true},
+                    Case{0.7, LifterProfile::kRectangle, true}, Case{0.7, LifterProfile::kTriangle, false},
+                    Case{0.9, LifterProfile::kRectangle, false}, Case{0.9, LifterProfile::kTriangle, true}),
+    name);
+
+// At 200 frames/s, ball by ball against the simulation's positions.
+TEST(Film, FindsAndFollowsTheBalls) {
+  const SimulatedMill mill = simulate_in_memory(mill_of({0.7, LifterProfile::kRectangle, false}, 0.7, 200));
+  const Film film(mill, false, 200);
+  const Config drawing = drawing_of(mill.setup.config);
+  analysis::FilmOptions options;
+  options.mill = &drawing;
+  const ChargeMotion seen = analysis::measure_film(film.path(), options);
+  const double metres_per_pixel = 0.2725 / 302.4;  // the renderer's plan: R is 302.4 px high in a picture of 720
+
+  std::size_t found = 0, switches = 0;
+  double squares = 0;
+  std::map<int, std::size_t> ball_of_track;
+  for (const TrackPoint& p : seen.tracks) {
+    const Frame& f = mill.frames[static_cast<std::size_t>(p.frame)];
+    std::size_t nearest = 0;
+    double best = INFINITY;
+    for (std::size_t b = 0; b < f.x.size(); ++b) {
+      const double d = std::hypot(p.x - f.x[b], p.y - f.y[b]);
+      if (d < best) best = d, nearest = b;
+    }
+    if (best > mill.setup.balls.radius[nearest] / 2) continue;  // a false ball
+    ++found;
+    squares += best * best;
+    const auto [track, is_new] = ball_of_track.try_emplace(p.id, nearest);
+    if (!is_new && track->second != nearest) ++switches, track->second = nearest;
+  }
+  const double truth = double(mill.frames.size() * mill.setup.balls.size());
+  EXPECT_GE(double(found) / truth, 0.98);
+  EXPECT_LE(double(seen.tracks.size() - found) / double(seen.tracks.size()), 0.01);
+  EXPECT_LE(std::sqrt(squares / double(found)) / metres_per_pixel, 0.5);
+  EXPECT_LE(double(switches) / double(found), 1e-3);
+  RecordProperty("recall", std::to_string(double(found) / truth));
+}
+
+}  // namespace
+}  // namespace tumble
