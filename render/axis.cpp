@@ -27,7 +27,8 @@ std::vector<Tick> ticks(double low, double high, int count) {
   const auto first = static_cast<long long>(std::ceil(low / step - 1e-9));
   for (long long i = first; static_cast<double>(i) * step <= high + 1e-9 * step; ++i) {
     const double value = static_cast<double>(i) * step;
-    marks.push_back({value, fmt::format("{:.{}f}", value == 0 ? 0.0 : value, decimals)});
+    const std::string size = fmt::format("{:.{}f}", std::abs(value), decimals);
+    marks.push_back({value, value < 0 ? "−" + size : size});
   }
   return marks;
 }

@@ -51,13 +51,14 @@ void main() {
   float sky = 0.5 + 0.5 * n.y * z * 2.0;
   vec3 base = disc_colour.rgb;
   vec3 body = base * (0.30 + 0.78 * lit) * mix(1.0, 0.62 + 0.62 * sky, gloss);
-  body = mix(body, vec3(0.97) * (0.35 + 0.70 * lit), mark);
+  float paint = dot(base, vec3(0.30, 0.59, 0.11)) > 0.62 ? 0.16 : 0.97;  // dark on pale balls
+  body = mix(body, vec3(paint) * (0.35 + 0.70 * lit), mark);
   body += vec3(1.0, 0.98, 0.94) * spark * mix(0.22, 0.60, gloss);
 
-  // A dark limb, inside the radius, parts balls that touch.
+  // A dark limb, inside the radius, parts balls that touch; balls of a few pixels would be nothing but limb.
   float limb = clamp(0.085 * radius, 0.5, 0.6 + 0.035 * radius);
   float rim = clamp((d - (radius - limb)) + 0.5, 0.0, 1.0);
-  body = mix(body, base * 0.10, rim);
+  body = mix(body, base * 0.10, rim * clamp(0.25 * radius, 0.0, 1.0));
   pixel = vec4(clamp(body, 0.0, 1.0), 1.0) * (cover * disc_colour.a);
 })";
 

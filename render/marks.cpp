@@ -35,25 +35,25 @@ void draw_pointer(Canvas& canvas, const MillShape& shape, const char* name, doub
   canvas.meshes.line(centre + rim * out, centre + shape.radius * canvas.layout.camera.pixels_per_metre * out,
                      canvas.stroke(1.3), ink::kAccent);
 
-  const TextStyle small{canvas.letter(12.5), with_alpha(ink::kAccent, 0.9), Weight::kRegular, Align::kCentre};
-  const TextStyle large{canvas.letter(14.5), ink::kText, Weight::kBold, Align::kCentre};
+  const TextStyle small{canvas.letter(12.5), with_alpha(ink::kAccent, 0.9)};
+  const TextStyle large{canvas.letter(14.5), ink::kText, Weight::kBold};
   const std::string value = fmt::format("{:.0f}°", wrap_360(std::round(angle_deg)));
-  // The label's box touches the circle around the pointer from outside, then stays inside the picture.
-  const double half_width = std::max(canvas.text.width(name, small), canvas.text.width(value, large)) / 2;
-  const double line = 1.12 * small.size, half_height = (line + large.size) / 2;
-  const double reach = end + canvas.px(5) + std::abs(out.x()) * half_width + std::abs(out.y()) * half_height;
-  Vec2 at = centre + reach * out;
+  const double name_width = canvas.text.width(name, small), value_width = canvas.text.width(value, large);
+  // Name over value at the mill's sides, both in one line where there is little room: above and below it.
+  const bool one_line = std::abs(out.y()) > 0.86;
+  const double gap = canvas.px(6), line = one_line ? 0 : 1.12 * small.size;
+  const double width = one_line ? name_width + gap + value_width : std::max(name_width, value_width);
+  const double height = line + 0.8 * large.size;
+  // The label's box touches the circle around the pointer from outside, and stays inside the picture.
+  const double reach = end + canvas.px(5) + (std::abs(out.x()) * width + std::abs(out.y()) * height) / 2;
   const Box& picture = canvas.layout.picture;
-  const double margin = canvas.px(6);
-  at.x() = std::clamp(at.x(), picture.left + margin + half_width, picture.right - margin - half_width);
-  const double top = picture.top + margin + half_height, bottom = picture.bottom - margin - half_height;
-  if (at.y() < top || at.y() > bottom) {  // no room above or below the mill: slide sideways round the pointer
-    at.y() = std::clamp(at.y(), top, bottom);
-    const double away = canvas.px(9) + half_width;
-    at.x() = (centre + end * out).x() + (out.x() < 0 ? -away : away);
-  }
-  canvas.text.add(name, at.x(), at.y() - half_height + 0.85 * small.size, small);
-  canvas.text.add(value, at.x(), at.y() - half_height + line + 0.85 * large.size, large);
+  const double margin = canvas.px(5);
+  const Vec2 middle = centre + reach * out;
+  const double x = std::clamp(middle.x(), picture.left + margin + width / 2, picture.right - margin - width / 2);
+  const double y = std::clamp(middle.y(), picture.top + margin + height / 2, picture.bottom - margin - height / 2);
+  const double baseline = y + height / 2;
+  canvas.text.add(name, one_line ? x - width / 2 : x - name_width / 2, baseline - line, small);
+  canvas.text.add(value, one_line ? x + width / 2 - value_width : x - value_width / 2, baseline, large);
 }
 
 }  // namespace
@@ -98,7 +98,7 @@ void draw_scale_bar(Canvas& canvas, const MillShape& shape, double arrow_seconds
   canvas.meshes.line({left, baseline - tick}, {left, baseline + tick}, w, ink::kQuiet);
   canvas.meshes.line({left + width, baseline - tick}, {left + width, baseline + tick}, w, ink::kQuiet);
   const TextStyle label{canvas.letter(13), ink::kQuiet, Weight::kRegular, Align::kCentre};
-  const std::string text = length >= 2 ? fmt::format("{:.0f} m", length) : fmt::format("{:.0f} mm", 1000 * length);
+  const std::string text = length >= 1 ? fmt::format("{:.0f} m", length) : fmt::format("{:.0f} mm", 1000 * length);
   canvas.text.add(text, left + width / 2, baseline - canvas.px(8), label);
 
   if (std::isnan(arrow_seconds)) return;

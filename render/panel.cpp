@@ -27,7 +27,9 @@ struct Plan {
         top(canvas.layout.panel.top) {
     const double bottom = canvas.layout.panel.bottom;
     speed_x = left;
-    torque_x = left + 170 * unit;
+    // Letters do not shrink below what can be read: a small picture has room for fewer of them.
+    is_small = unit < 0.75;
+    torque_x = left + (is_small ? 230 : 170) * unit;
     power_x = left + 322 * unit;
     bar_top = bottom - (21 + kBarHeight) * unit;
     bar_title = bar_top - 11 * unit;
@@ -36,6 +38,7 @@ struct Plan {
   }
   double y(double units) const { return top + units * unit; }
 
+  bool is_small = false;
   double unit, left, right, top;
   double speed_x, torque_x, power_x;
   double plot_top, plot_bottom, bar_title, bar_top;
@@ -101,7 +104,7 @@ const char* title_of(Colour by) {
     case Colour::kSize:
       return "Ball radius, mm";
     case Colour::kSpin:
-      return "Ball spin, rad/s (counter-clockwise > 0)";
+      return "Ball spin, rad/s (> 0 in the mill's sense)";
     case Colour::kSteel:
       break;
   }
@@ -169,13 +172,17 @@ void draw_still_panel(Canvas& canvas, const Panel& panel, bool pale) {
   value_and_unit(canvas, plan.speed_x, plan.y(148), fmt::format("{:.1f}", rpm), "rev/min");
   label_and_remark(canvas, plan.torque_x, plan.y(148), "Torque",
                    std::isnan(mean) ? "of one slice" : fmt::format("mean {:.2f} N m", mean));
-  label_and_remark(canvas, plan.power_x, plan.y(148), "Power",
-                   std::isnan(mean) ? "of one slice" : fmt::format("mean {:.1f} W", mean * panel.setup.mill_speed));
+  if (!plan.is_small) {
+    label_and_remark(canvas, plan.power_x, plan.y(148), "Power",
+                     std::isnan(mean) ? "of one slice" : fmt::format("mean {:.1f} W", mean * panel.setup.mill_speed));
+  }
   rule(canvas, plan.y(214));
 
   if (panel.plot) {
     text.add("Torque of one slice, N m", plan.left, plan.y(240), {canvas.letter(13), ink::kText});
-    text.add("running mean over a lifter passage; time, s", plan.right, plan.y(240), quiet(canvas, 11, Align::kRight));
+    if (!plan.is_small)
+      text.add("running mean over a lifter passage; time, s", plan.right, plan.y(240),
+               quiet(canvas, 11, Align::kRight));
     draw_torque_curve(canvas, *panel.plot, panel.trace, pale);
   }
 
@@ -208,8 +215,10 @@ void draw_moving_panel(Canvas& canvas, const Panel& panel, const Frame& frame) {
   const double running = panel.trace.running(frame.time);
   const double torque = std::isnan(running) ? frame.observed.torque : running;
   value_and_unit(canvas, plan.torque_x, plan.y(148), std::isnan(torque) ? "–" : fmt::format("{:.1f}", torque), "N m");
-  value_and_unit(canvas, plan.power_x, plan.y(148),
-                 std::isnan(torque) ? "–" : fmt::format("{:.1f}", torque * panel.setup.mill_speed), "W");
+  if (!plan.is_small) {
+    value_and_unit(canvas, plan.power_x, plan.y(148),
+                   std::isnan(torque) ? "–" : fmt::format("{:.1f}", torque * panel.setup.mill_speed), "W");
+  }
   if (panel.plot) draw_torque_cursor(canvas, *panel.plot, panel.trace, frame.time);
 }
 
