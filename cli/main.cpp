@@ -21,6 +21,17 @@ int fail(const std::string& line, int status) {
   return status;
 }
 
+// CLI11 would only say that a verb is missing.
+void check_verb(const CLI::App& app, const std::string& word) {
+  if (word.empty() || word[0] == '-') return;
+  std::string known;
+  for (const CLI::App* verb : app.get_subcommands([](const CLI::App*) { return true; })) {
+    if (verb->get_name() == word) return;
+    known += (known.empty() ? "" : ", ") + verb->get_name();
+  }
+  throw tumble::InputError(word, "unknown verb; known: " + known);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -36,6 +47,7 @@ int main(int argc, char** argv) {
 
   try {
     tumble::cli::catch_signals();
+    if (argc > 1) check_verb(app, argv[1]);
     app.parse(argc, argv);
   } catch (const CLI::Success& e) {  // --help, --version
     return app.exit(e);

@@ -70,6 +70,8 @@ Space make_space(const Shape& shape) {
 std::unique_lock<std::recursive_mutex> lock() {
   static std::recursive_mutex mutex;
   std::unique_lock held(mutex);
+  // At exit the library would close files that a full disk let it neither write nor close, and crash over them.
+  [[maybe_unused]] static const herr_t before_first_use = H5dont_atexit();
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // errors are ours to tell
   return held;
 }

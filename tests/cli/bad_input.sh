@@ -33,7 +33,7 @@ simulate() { refused "$1" "$2" run.h5 "$tumble" simulate "$3" -o run.h5 --quiet 
 
 # --- the command line
 refused 2 'verb\|subcommand' "" "$tumble"
-refused 2 'simulat' "" "$tumble" simulat mill.toml -o run.h5
+refused 2 'simulat: unknown verb; known:.*simulate' "" "$tumble" simulat mill.toml -o run.h5
 refused 2 'output' "" "$tumble" simulate mill.toml
 refused 2 'ship' "" "$tumble" simulate mill.toml -o run.h5 --ship
 
@@ -46,7 +46,7 @@ with 's/diameter = 0.545/diameter = "wide"/' wrong.toml && simulate 2 'wrong.tom
 with 's/diameter = 0.545/diameter = = 1/' wrong.toml && simulate 2 'wrong.toml:4' wrong.toml
 with 's/count = 112/filling = 0.95/' wrong.toml && simulate 2 'charge.filling' wrong.toml
 with 's/width = 0.02 /width = 0.2 /' wrong.toml && simulate 2 'overlap' wrong.toml
-with 's/radius = 0.025/radius = 0.25/' wrong.toml && simulate 2 'does not fit' wrong.toml
+with 's/radius = 0.025/radius = 0.3/' wrong.toml && simulate 2 'does not fit' wrong.toml
 with 's/time_step = "auto"/time_step = 1e-3/' wrong.toml && simulate 2 'wrong.toml:[0-9]*: run.time_step' wrong.toml
 simulate 2 'mill.sped' mill.toml --set mill.sped=0.7
 simulate 2 'mill.speed' mill.toml --set mill.speed=fast
@@ -107,7 +107,7 @@ refused 1 'run.h5' run.h5 bash -c "ulimit -f 200; exec '$tumble' simulate mill.t
 rm -f run.h5.part
 
 # --- Ctrl-C in the middle, then --resume to the same bytes as undisturbed
-long=(mill.toml --quiet --set run.spin_up=0.2 --set run.revolutions=8)
+long=(mill.toml --quiet --set run.spin_up=0.2 --set run.revolutions=40)
 refused 1 'interrupted.*--resume' stopped.h5 timeout --preserve-status -s INT 1.5 "$tumble" simulate "${long[@]}" -o stopped.h5 --threads 1
 [ -e stopped.h5.part ] || fail "Ctrl-C lost the interrupted run"
 "$tumble" simulate "${long[@]}" -o stopped.h5 --resume || fail "resume after Ctrl-C"
