@@ -1,1 +1,346 @@
 #include "io/report_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+#include <numeric>
+#include <utility>
+
+#include "core/angle.h"
+#include "core/error.h"
+#include "core/mill_shape.h"
+#include "io/output.h"
+#include "io/report/embedded.h"
+#include "io/report/html.h"
+#include "io/report/mill_picture.h"
+
+namespace tumble::io {
+namespace fs = std::filesystem;
+using namespace report;
+namespace {
+
+constexpr std::uintmax_t kLargestEmbedded = 64u << 20;  // [bytes]; a larger film stays beside the report
+
+struct Name {
+  const char* key;
+  const char* words;
+};
+constexpr Name kNames[] = {
+    {"speed_rpm", "Speed"},
+    {"speed_fraction", "Speed, share of critical"},
+    {"filling", "Filling"},
+    {"toe_deg", "Toe"},
+    {"shoulder_deg", "Shoulder"},
+    {"toe_bulk_deg", "Toe, bulk"},
+    {"shoulder_bulk_deg", "Shoulder, bulk"},
+    {"toe_outer_deg", "Toe, outer"},
+    {"shoulder_outer_deg", "Shoulder, outer"},
+    {"head_m", "Head of the charge"},
+    {"centre_of_circulation_x_m", "Centre of circulation, x"},
+    {"centre_of_circulation_y_m", "Centre of circulation, y"},
+    {"departure_deg", "Departure from the shell"},
+    {"impact_toe_deg", "Impact toe"},
+    {"torque_N_m", "Torque of one slice"},
+    {"torque_closure_N_m", "Torque by the charge’s weight"},
+};
+
+std::string words_for(const std::string& name) {
+  for (const Name& n : kNames)
+    if (name == n.key) return n.words;
+  return escaped(name);
+}
+
+const char* adjective(LifterProfile profile) {
+  switch (profile) {
+    case LifterProfile::kRectangle:
+      return "rectangular ";
+    case LifterProfile::kTriangle:
+      return "triangular ";
+    case LifterProfile::kTrapezoid:
+      return "trapezoidal ";
+    case LifterProfile::kNone:
+      break;
+  }
+  return "";
+}
+
+std::string lifters_of(const Mill& mill) {
+  if (mill.lifters.profile == LifterProfile::kNone || mill.lifters.count == 0) return "without lifters";
+  return fmt::format("with {} {}lifters", mill.lifters.count, adjective(mill.lifters.profile));
+}
+
+std::string title_of(const Config& c) {
+  return fmt::format("A mill of {:.4g} m {} at {:.3g} of critical speed", c.mill.diameter, lifters_of(c.mill),
+                     speed_fraction(c.mill));
+}
+
+std::string degrees_of(const Estimate& e) { return with_error(e) + "°"; }
+
+// The report's first sentences: what was run and what was found.
+std::string lead_of(const RunReport& r) {
+  const Config& c = r.setup->config;
+  std::string text = fmt::format(
+      "{} balls were tumbled for {:.4g} revolutions, after {:.4g} of spin-up, at {:.3g} of critical speed "
+      "({:.4g} rev/min) in a mill of {:.4g} m {}.",
+      r.setup->balls.size(), c.run.revolutions, r.result->spin_up_revolutions, speed_fraction(c.mill),
+      speed_rpm(c.mill), c.mill.diameter, lifters_of(c.mill));
+  if (std::isfinite(r.truth->torque.value)) text += " To turn one slice took " + with_error(r.truth->torque) + " N m.";
+  const Estimate &toe = r.film->toe_deg, &shoulder = r.film->shoulder_deg;
+  if (!std::isfinite(toe.value) || !std::isfinite(shoulder.value))
+    return text + " The film alone did not give both toe and shoulder.";
+  text += fmt::format(" From the rendered film alone, the toe was found at {} and the shoulder at {}", degrees_of(toe),
+                      degrees_of(shoulder));
+  const double off_toe = std::abs(wrap_180(toe.value - r.truth->toe_deg.value));
+  const double off_shoulder = std::abs(wrap_180(shoulder.value - r.truth->shoulder_deg.value));
+  if (std::isfinite(off_toe) && std::isfinite(off_shoulder))
+    text += fmt::format(", {:.1f}° and {:.1f}° from where the simulation has them", off_toe, off_shoulder);
+  return text + ".";
+}
+
+std::string caveats_of(const RunReport& r) {
+  std::vector<std::string> all;
+  const auto add = [&](const std::string& text) {
+    if (!text.empty() && std::find(all.begin(), all.end(), text) == all.end()) all.push_back(text);
+  };
+  add(r.result->caveat);
+  if (!r.result->steady && r.result->caveat.empty())
+    add("The averages still drifted while they were taken: more spin-up is needed, or spin_up = \"auto\".");
+  for (const auto& caveat : r.truth->caveats) add(caveat);
+  for (const auto& caveat : r.film->caveats) add("Film: " + caveat);
+  if (all.empty()) return "";
+  std::string items;
+  for (const auto& text : all) items += "<li>" + escaped(text) + "</li>";
+  return R"(<section class="caveats"><h2>Before you believe the numbers</h2><ul>)" + items + "</ul></section>";
+}
+
+std::string key(const std::string& term, const std::string& value, const std::string& beside) {
+  return "<div><dt>" + term + "</dt><dd>" + value + "<small>" + beside + "</small></dd></div>";
+}
+
+std::string keys_of(const RunReport& r) {
+  const ChargeMotion &truth = *r.truth, &film = *r.film;
+  std::string out;
+  const double gap = std::abs(truth.torque.value / truth.torque_closure.value - 1);
+  out += key("Torque of one slice", with_error(truth.torque) + " N m",
+             "from the charge’s weight " + number(truth.torque_closure.value, truth.torque.se) + " N m" +
+                 (std::isfinite(gap) ? fmt::format(", {:.2g} % apart", 100 * gap) : ""));
+  const Estimate power{truth.torque.value * r.setup->mill_speed, truth.torque.se * r.setup->mill_speed};
+  const double slices = slice_count(r.setup->config);
+  out += key("Power of one slice", with_error(power) + " W",
+             slices == 1 ? "the slice is the mill"
+                         : fmt::format("the mill’s {:.3g} slices: {} W", slices,
+                                       number(power.value * slices, power.se * slices)));
+  out += key("Toe in the film", degrees_of(film.toe_deg), "simulation " + degrees_of(truth.toe_deg));
+  out += key("Shoulder in the film", degrees_of(film.shoulder_deg), "simulation " + degrees_of(truth.shoulder_deg));
+  if (film.frames > 0)
+    out += key("Balls seen in a frame", fmt::format("{:.4g}", static_cast<double>(film.tracks.size()) / film.frames),
+               fmt::format("of {}", r.setup->balls.size()));
+  if (std::isfinite(r.energy_error))
+    out += key("Energy balance", fmt::format("{:.2g} %", 100 * std::abs(r.energy_error)),
+               "of the drive’s work is not accounted for");
+  return out;
+}
+
+std::string url_of(const fs::path& file) {
+  std::string out;
+  for (const char c : file.string()) {
+    const auto byte = static_cast<unsigned char>(c);
+    out += std::isalnum(byte) || std::strchr("-._~/", c) ? std::string(1, c) : fmt::format("%{:02X}", byte);
+  }
+  return out;
+}
+
+struct Film {
+  std::string html, media_source;
+};
+Film film_of(const RunReport& r, const fs::path& report_path) {
+  if (r.film_file.empty()) return {"<p>No film was rendered.</p>", ""};
+  errno = 0;
+  std::ifstream in(r.film_file, std::ios::binary);
+  std::error_code error;
+  const auto size = fs::file_size(r.film_file, error);
+  if (!in || error)
+    throw WorkError(r.film_file.string(),
+                    std::string("cannot be read for the report: ") + std::strerror(errno ? errno : error.value()));
+  const std::string open = R"(<video controls loop muted playsinline preload="auto" src=")", close = R"("></video>)";
+  if (size > kLargestEmbedded) {
+    const fs::path folder = report_path.has_parent_path() ? report_path.parent_path() : fs::path(".");
+    return {open + escaped(url_of(fs::proximate(r.film_file, folder, error))) + close, "file: 'self'"};
+  }
+  const std::string bytes{std::istreambuf_iterator<char>(in), {}};
+  return {open + "data:video/mp4;base64," + base64(bytes) + close, ""};
+}
+
+std::string rows_of(const Deviation& deviation) {
+  std::string rows;
+  for (const Difference& d : deviation.differences) {
+    if (!std::isfinite(d.b.value)) continue;  // torque: a film has none, and the truth's stands above
+    // Both in the digits of the better known one, so that they can be compared by eye.
+    rows += fmt::format("<tr{}><th scope=\"row\">{}</th><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td></tr>",
+                        std::abs(d.z) > 3 ? " class=\"far\"" : "", words_for(d.name), escaped(d.unit), with_error(d.a),
+                        with_error(d.b), with_error({d.difference, d.se}),
+                        std::isfinite(d.z) ? fmt::format("{:.1f}", d.z) : "–");
+  }
+  return rows;
+}
+
+std::string fact(const std::string& term, const std::string& value) {
+  return "<dt>" + term + "</dt><dd>" + value + "</dd>";
+}
+
+std::string facts_of(const RunReport& r) {
+  const RunSetup& s = *r.setup;
+  std::string out = fact("Program", "tumble " + escaped(r.version));
+  out += fact("Seed of the packing", std::to_string(s.config.run.seed));
+  out +=
+      fact("Balls", fmt::format("{} in {} sizes, {:.4g} kg in the slice", s.balls.size(), s.config.charge.balls.size(),
+                                std::accumulate(s.balls.mass.begin(), s.balls.mass.end(), 0.0)));
+  out += fact("Time step", fmt::format("{:.4g} s", s.time_step));
+  out += fact("Frames of the simulation",
+              fmt::format("{} at {:.4g} per second", r.truth->frames, r.truth->frames_per_second));
+  out += fact("Frames of the film",
+              fmt::format("{}, true rate {} per second, {} × {} pixels", r.film->frames,
+                          number(r.film->frames_per_second), r.film->camera.width_px, r.film->camera.height_px));
+  if (r.seconds_simulating > 0)
+    out += fact("Time taken", fmt::format("{:.1f} s simulating, {:.1f} s rendering, {:.1f} s analysing",
+                                          r.seconds_simulating, r.seconds_rendering, r.seconds_analysing));
+  return out;
+}
+
+std::string torque_caption(const ChargeMotion& truth) {
+  std::string text = "Mean torque of each frame’s interval that the drive gives to one slice.";
+  if (std::isfinite(truth.torque.value))
+    text += " Coloured: its mean, " + with_error(truth.torque) + " N m, and one standard error to each side.";
+  return text;
+}
+
+constexpr const char* kSpectrumFigure =
+    "<figure><div class=\"plot\" id=\"plot-spectrum\"></div><figcaption>Impacts by the energy that is lost in them, "
+    "per second and bin.</figcaption></figure>";
+
+// Seven digits are more than a plot can show.
+Json plotted(double v) { return std::isfinite(v) ? Json(std::stod(fmt::format("{:.7g}", v))) : Json(nullptr); }
+
+template <typename Rows, typename Get>
+Json column(const Rows& rows, Get get) {
+  Json out = Json::array();
+  for (const auto& row : rows) out.push_back(plotted(get(row)));
+  return out;
+}
+
+// Directions beside their mean rather than in [0, 360), so that a line does not jump across.
+Json near_mean(const ChargeMotion& m, const Estimate& mean, double ProfileRow::*of) {
+  return column(m.profile, [&](const ProfileRow& row) {
+    return std::isfinite(mean.value) ? mean.value + wrap_180(row.*of - mean.value) : row.*of;
+  });
+}
+
+Json per_frame(const ChargeMotion& m) {
+  return {{"time", column(m.profile, [](const ProfileRow& row) { return row.time; })},
+          {"toe", near_mean(m, m.toe_deg, &ProfileRow::toe_deg)},
+          {"shoulder", near_mean(m, m.shoulder_deg, &ProfileRow::shoulder_deg)}};
+}
+
+// Opposite to the middle of the charge, on a round number: where a plot over all directions is best cut open.
+int emptiest_direction(const std::array<double, 360>& occupancy) {
+  double c = 0, s = 0;
+  for (std::size_t i = 0; i < occupancy.size(); ++i) {
+    if (!std::isfinite(occupancy[i])) continue;
+    c += occupancy[i] * std::cos(radians(static_cast<double>(i)));
+    s += occupancy[i] * std::sin(radians(static_cast<double>(i)));
+  }
+  return static_cast<int>(wrap_360(30 * std::round((degrees(std::atan2(s, c)) + 180) / 30)));
+}
+
+// Bins without an impact have no place on a logarithmic axis; those at the ends are left out.
+Json spectrum_of(const ImpactSpectrum& spectrum) {
+  Json energy = Json::array(), ball_ball = Json::array(), ball_wall = Json::array();
+  const std::size_t bins = spectrum.edges_J.empty() ? 0 : spectrum.edges_J.size() - 1;
+  const auto at = [](const std::vector<double>& v, std::size_t i) {
+    return i < v.size() && v[i] > 0 ? v[i] : kNotGiven;
+  };
+  const auto empty = [&](std::size_t i) {
+    return std::isnan(at(spectrum.ball_ball, i)) && std::isnan(at(spectrum.ball_wall, i));
+  };
+  std::size_t begin = 0, end = bins;
+  while (begin < end && empty(begin)) ++begin;
+  while (end > begin && empty(end - 1)) --end;
+  for (std::size_t i = begin; begin < end && i <= end; ++i) {
+    const std::size_t bin = std::min(i, end - 1);  // the last edge closes the last step
+    energy.push_back(plotted(spectrum.edges_J[i]));
+    ball_ball.push_back(plotted(at(spectrum.ball_ball, bin)));
+    ball_wall.push_back(plotted(at(spectrum.ball_wall, bin)));
+  }
+  return {{"energy", energy}, {"ball_ball", ball_ball}, {"ball_wall", ball_wall}};
+}
+
+Json data_of(const RunReport& r, const Json& spectrum) {
+  const ChargeMotion &truth = *r.truth, &film = *r.film;
+  const auto same = [](double v) { return v; };
+  const double film_seconds = film.profile.empty() ? 0.0 : film.profile.back().time + 1 / film.frames_per_second;
+  return {{"occupancy",
+           {{"start", emptiest_direction(truth.ring_occupancy)},
+            {"truth", column(truth.ring_occupancy, same)},
+            {"film", column(film.ring_occupancy, same)}}},
+          {"toe", {plotted(truth.toe_deg.value), plotted(film.toe_deg.value)}},
+          {"shoulder", {plotted(truth.shoulder_deg.value), plotted(film.shoulder_deg.value)}},
+          {"truth", per_frame(truth)},
+          {"film", per_frame(film)},
+          {"film_seconds", plotted(film_seconds)},
+          {"torque",
+           {{"time", column(truth.torque_series, [](const TorqueRow& row) { return row.time; })},
+            {"torque", column(truth.torque_series, [](const TorqueRow& row) { return row.torque; })},
+            {"mean", {plotted(truth.torque.value), plotted(std::isfinite(truth.torque.se) ? truth.torque.se : 0.0)}}}},
+          {"spectrum", spectrum}};
+}
+
+std::string picture_caption(const ChargeMotion& m) {
+  std::string text = "Shade: mean share of the area that balls cover. Arrows: mean velocity.";
+  if (std::isfinite(m.centre_of_circulation_x.value)) text += " Cross: centre of circulation.";
+  return text;
+}
+
+}  // namespace
+
+void write_run_report(const fs::path& path, const RunReport& r) {
+  const Config& config = r.setup->config;
+  const MillShape shape = make_mill_shape(config.mill);
+  const Film film = film_of(r, path);
+  const Json spectrum = spectrum_of(r.result->spectrum);
+  const std::string title = title_of(config);
+  write_text(
+      path,
+      filled(run_html,
+             {{"title", escaped(title)},
+              {"media_source", film.media_source},
+              {"uplot_css", std::string(uplot_css)},
+              {"style", std::string(style_css)},
+              {"lead", escaped(lead_of(r))},
+              {"caveats", caveats_of(r)},
+              {"keys", keys_of(r)},
+              {"film", film.html},
+              {"film_caption",
+               "The simulation as it was rendered and then analysed; the upright line in the plots "
+               "over time stands where the film is."},
+              {"truth_picture", mill_picture(shape, *r.truth, nullptr, "Mean charge in the simulation")},
+              {"truth_picture_caption", picture_caption(*r.truth)},
+              {"film_picture", mill_picture(shape, *r.film, r.truth, "Mean charge as found in the film")},
+              {"film_picture_caption", "Broken lines: the simulation’s toe and shoulder."},
+              {"torque_caption", escaped(torque_caption(*r.truth))},
+              {"spectrum", spectrum["energy"].empty() ? "" : kSpectrumFigure},
+              {"table_intro", "The analyser saw the film, the mill’s drawing and the ball sizes, and nothing else."},
+              {"rows", rows_of(*r.deviation)},
+              {"facts", facts_of(r)},
+              {"config", escaped(r.config_text)},
+              {"footer", "Written by tumble " + escaped(r.version) + ". This page needs no other file and no network."},
+              {"data", script_json(data_of(r, spectrum))},
+              {"uplot_js", std::string(uplot_js)},
+              {"script", std::string(run_js)}}));
+}
+
+}  // namespace tumble::io

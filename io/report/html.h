@@ -1,0 +1,32 @@
+#pragma once
+#include <map>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <string_view>
+
+#include "core/statistics.h"
+
+// Text for a page. Whatever comes from files and names passes through here, so none of it is ever read as markup.
+namespace tumble::io::report {
+
+using Json = nlohmann::ordered_json;
+
+// Valid UTF-8 (what is not is replaced) with & < > " ' escaped: for text and for attributes in quotes.
+std::string escaped(const std::string& text);
+
+// JSON that can stand inside <script>: ASCII, and no "<", so nothing in it ends the element.
+std::string script_json(const Json& json);
+
+std::string base64(std::string_view bytes);
+
+// Puts values where the page says {{name}}. What was put in is not looked at again. A {{name}} without a value, or a
+// value without a place, is a mistake of ours: std::logic_error.
+std::string filled(std::string_view page, const std::map<std::string, std::string>& values);
+
+// "231.42", with as many digits as the standard error gives meaning to (two of its own); four digits without one.
+// An en dash where there is no number.
+std::string number(double value, double se = kNotGiven);
+// "231.42 ± 0.31"
+std::string with_error(const Estimate& estimate);
+
+}  // namespace tumble::io::report

@@ -1,0 +1,128 @@
+"use strict";
+(() => {
+  const data = JSON.parse(document.getElementById("data").textContent);
+  const root = getComputedStyle(document.documentElement);
+  const colour = name => () => root.getPropertyValue("--" + name).trim();
+  const ink = colour("ink"), soft = colour("soft"), grid = colour("grid"), truth = colour("truth"), found = colour("found");
+  const faint = of => () => of() + "22";
+  const font = "12px system-ui, -apple-system, 'Segoe UI', Roboto, 'DejaVu Sans', sans-serif";
+  const digits = n => (u, v) => v == null ? "–" : v.toFixed(n);
+  const degree = v => ((v % 360) + 360) % 360;
+  const plots = [];
+
+  const axis = (label, more) => Object.assign(
+    { label, labelFont: font, font, stroke: soft, labelSize: 22, size: 46, grid: { stroke: grid, width: 1 }, ticks: { stroke: grid, width: 1 } }, more);
+  const line = (label, stroke, more) => Object.assign({ label, stroke, width: 1.6, points: { show: false }, spanGaps: true }, more);
+
+  // Upright lines at given places: toe and shoulder.
+  const uprights = lines => u => {
+    const c = u.ctx;
+    c.save();
+    for (const [x, stroke, dash] of lines) {
+      if (x == null || x < u.scales.x.min || x > u.scales.x.max) continue;
+      const at = u.valToPos(x, "x", true);
+      c.beginPath();
+      c.setLineDash(dash.map(d => d * devicePixelRatio));
+      c.lineWidth = 1.4 * devicePixelRatio;
+      c.strokeStyle = stroke();
+      c.moveTo(at, u.bbox.top);
+      c.lineTo(at, u.bbox.top + u.bbox.height);
+      c.stroke();
+    }
+    c.restore();
+  };
+
+  // A band between two heights, behind the lines.
+  const band = (low, high, stroke) => u => {
+    if (low == null) return;
+    const c = u.ctx, top = u.valToPos(high, "y", true), bottom = u.valToPos(low, "y", true);
+    c.save();
+    c.beginPath();
+    c.rect(u.bbox.left, u.bbox.top, u.bbox.width, u.bbox.height);
+    c.clip();
+    c.fillStyle = stroke() + "44";
+    c.fillRect(u.bbox.left, top, u.bbox.width, Math.max(bottom - top, 1));
+    c.fillStyle = stroke();
+    c.fillRect(u.bbox.left, (top + bottom) / 2 - devicePixelRatio / 2, u.bbox.width, devicePixelRatio);
+    c.restore();
+  };
+
+  const plot = (id, options, columns) => {
+    const place = document.getElementById(id);
+    if (!place || !columns[0].length) return null;
+    const size = () => ({ width: Math.max(place.clientWidth, 200), height: place.clientHeight - 34 });
+    const u = new uPlot(Object.assign({ cursor: { y: false, points: { size: 6 } } }, size(), options), columns, place);
+    new ResizeObserver(() => u.setSize(size())).observe(place);
+    plots.push(u);
+    return u;
+  };
+
+  // The charge lies across 3 o'clock: the axis begins where there is least of it.
+  const start = data.occupancy.start;
+  const turned = v => v == null ? null : start + degree(v - start);
+  const angles = data.occupancy.truth.map((_, i) => start + i + 0.5);
+  const from_start = row => angles.map(a => row[Math.floor(degree(a))]);
+  plot("plot-occupancy", {
+    scales: { x: { time: false }, y: { range: (u, low, high) => [0, Math.max(high * 1.05, 0.1)] } },
+    axes: [axis("angle, degrees", { values: (u, ticks) => ticks.map(t => degree(t)), incrs: [1, 2, 5, 10, 15, 30, 45, 60, 90] }), axis("occupancy")],
+    series: [{ label: "angle", value: (u, v) => v == null ? "–" : degree(v).toFixed(1) + "°" },
+             line("simulation", truth, { fill: faint(truth), value: digits(3) }), line("film", found, { value: digits(3) })],
+    hooks: { draw: [uprights([[turned(data.toe[0]), truth, []], [turned(data.shoulder[0]), truth, []],
+                              [turned(data.toe[1]), found, [4, 4]], [turned(data.shoulder[1]), found, [4, 4]]])] },
+  }, [angles, from_start(data.occupancy.truth), from_start(data.occupancy.film)]);
+
+  const per_frame = (id, key) => plot(id, {
+    scales: { x: { time: false } },
+    axes: [axis("time, s"), axis("degrees", { size: 54 })],
+    series: [{ label: "time", value: digits(3) }, line("simulation", truth, { value: digits(2) }), line("film", found, { value: digits(2) })],
+  }, uPlot.join([[data.truth.time, data.truth[key]], [data.film.time, data.film[key]]]));
+  const timed = [per_frame("plot-toe", "toe"), per_frame("plot-shoulder", "shoulder")];
+
+  const [mean, error] = data.torque.mean;
+  timed.push(plot("plot-torque", {
+    scales: { x: { time: false } },
+    axes: [axis("time, s"), axis("torque, N m", { size: 54 })],
+    series: [{ label: "time", value: digits(3) }, line("torque of one slice", truth, { width: 1, value: digits(3) })],
+    hooks: { drawSeries: [band(mean == null ? null : mean - error, mean + error, found)] },
+  }, [data.torque.time, data.torque.torque]));
+
+  const tens = v => v == null ? "" : v.toExponential(0).replace("e+", "e");
+  plot("plot-spectrum", {
+    scales: { x: { time: false, distr: 3 }, y: { distr: 3 } },
+    axes: [axis("energy lost in an impact, J", { values: (u, t) => t.map(tens) }), axis("impacts per second", { size: 60, values: (u, t) => t.map(tens) })],
+    series: [{ label: "energy", value: (u, v) => v == null ? "–" : v.toExponential(2) + " J" },
+             line("ball on ball", truth, { spanGaps: false, paths: uPlot.paths.stepped({ align: 1 }), value: (u, v) => v == null ? "–" : v.toPrecision(3) }),
+             line("ball on wall", found, { spanGaps: false, paths: uPlot.paths.stepped({ align: 1 }), value: (u, v) => v == null ? "–" : v.toPrecision(3) })],
+  }, [data.spectrum.energy, data.spectrum.ball_ball, data.spectrum.ball_wall]);
+
+  // Where the film is now, in the plots over time.
+  const film = document.querySelector("video"), span = data.film_seconds;
+  if (film && span > 0) {
+    const heads = timed.filter(u => u).map(u => {
+      const head = document.createElement("div");
+      head.className = "playhead";
+      u.over.appendChild(head);
+      return [u, head];
+    });
+    const follow = () => {
+      if (!(film.duration > 0)) return;
+      const t = film.currentTime / film.duration * span;
+      for (const [u, head] of heads) {
+        const at = u.valToPos(t, "x");
+        head.style.transform = `translateX(${at}px)`;
+        head.hidden = at < 0 || at > u.over.clientWidth;
+      }
+      if (!film.paused) requestAnimationFrame(follow);
+    };
+    for (const event of ["play", "seeked", "loadedmetadata"]) film.addEventListener(event, follow);
+  }
+  // Some browsers want a film in pieces, which a data: address cannot give; a blob can.
+  if (film) film.addEventListener("error", async () => {
+    if (!film.src.startsWith("data:")) return;
+    const bytes = Uint8Array.from(atob(film.src.split(",")[1]), c => c.charCodeAt(0));
+    film.src = URL.createObjectURL(new Blob([bytes], { type: "video/mp4" }));
+  });
+
+  const redraw = () => plots.forEach(u => u.redraw(false));
+  for (const query of ["(prefers-color-scheme: dark)", "print"]) matchMedia(query).addEventListener("change", redraw);
+})();
