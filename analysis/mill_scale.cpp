@@ -1,0 +1,119 @@
+#include "analysis/mill_scale.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+
+#include "core/units.h"
+
+namespace tumble::analysis {
+namespace {
+
+constexpr double kBin = 0.25;  // of histograms [px]
+constexpr int kSectors = 36;
+
+std::vector<double> smooth_histogram(const std::vector<double>& values, double top, double sigma) {
+  std::vector<double> h(static_cast<std::size_t>(top / kBin) + 2, 0.0);
+  for (double v : values)
+    if (v >= 0 && v < top) h[static_cast<std::size_t>(v / kBin)] += 1;
+  const int reach = static_cast<int>(std::ceil(3 * sigma / kBin));
+  std::vector<double> smoothed(h.size(), 0.0);
+  for (int i = 0; i < static_cast<int>(h.size()); ++i)
+    for (int k = std::max(0, i - reach); k <= std::min<int>(static_cast<int>(h.size()) - 1, i + reach); ++k)
+      smoothed[i] += h[k] * std::exp(-0.5 * std::pow((k - i) * kBin / sigma, 2));
+  return smoothed;
+}
+
+}  // namespace
+
+ShellTouch find_shell_touch(const std::vector<std::vector<Detection>>& frames, int size_class, const Circle& centre) {
+  struct Place {
+    double rho, cu, cv;  // distance and direction from the centre
+  };
+  std::vector<Place> places;
+  std::vector<double> distances;
+  double radius = 0;
+  for (const auto& f : frames)
+    for (const Detection& d : f) {
+      if (d.size_class != size_class) continue;
+      const double du = d.u - centre.u, dv = d.v - centre.v, rho = std::hypot(du, dv);
+      if (rho < 1) continue;
+      places.push_back({rho, du / rho, dv / rho});
+      distances.push_back(rho);
+      radius = d.radius;
+    }
+  ShellTouch touch;
+  if (places.size() < 30) return touch;
+  const double top = *std::max_element(distances.begin(), distances.end()) + 4;
+  const double sigma = std::max(0.5, 0.06 * radius);
+  const auto histogram = smooth_histogram(distances, top, sigma);
+  const double typical = *std::max_element(histogram.begin(), histogram.end());
+  for (std::size_t i = histogram.size() - 2; i > 0; --i) {  // from outside inwards
+    if (histogram[i] < 0.25 * typical || histogram[i] < histogram[i - 1] || histogram[i] < histogram[i + 1]) continue;
+    const double reach = (static_cast<double>(i) + 0.5) * kBin;
+    std::array<int, kSectors> sectors{};
+    int crowd = 0;
+    for (const Place& p : places) {
+      if (std::abs(p.rho - reach) > 3 * sigma) continue;
+      ++sectors[static_cast<std::size_t>((std::atan2(p.cv, p.cu) + kPi) / (2 * kPi) * kSectors) % kSectors];
+      ++crowd;
+    }
+    const double even = static_cast<double>(crowd) / kSectors;
+    const auto filled = std::count_if(sectors.begin(), sectors.end(), [&](int n) { return n > 0.3 * even; });
+    if (crowd < 15 || static_cast<double>(filled) > 0.9 * kSectors) continue;  // all the way round: fixed to the drum
+    touch.found = true;
+    touch.reach = reach;
+    touch.count = crowd;
+    // rho = reach - shift . direction for balls at the shell; robust least squares with a window that closes in.
+    for (double window : {3.0 * sigma, 2.0 * sigma, 2.0 * sigma, 2.0 * sigma, 2.0 * sigma}) {
+      cv::Matx33d a = cv::Matx33d::zeros();
+      cv::Vec3d b(0, 0, 0);
+      for (const Place& p : places) {
+        const double miss = p.rho - touch.reach + touch.shift_u * p.cu + touch.shift_v * p.cv;
+        if (std::abs(miss) >= window) continue;
+        const double k = 1 - miss * miss / (window * window), w = k * k;
+        const cv::Vec3d row(1, -p.cu, -p.cv);
+        a += w * row * row.t();
+        b += w * p.rho * row;
+      }
+      cv::Vec3d x;
+      // A short arc cannot tell a shift from a smaller reach.
+      const cv::Matx22d spread(a(1, 1) - a(0, 1) * a(0, 1) / a(0, 0), a(1, 2) - a(0, 1) * a(0, 2) / a(0, 0),
+                               a(1, 2) - a(0, 1) * a(0, 2) / a(0, 0), a(2, 2) - a(0, 2) * a(0, 2) / a(0, 0));
+      const double least = 0.5 * (spread(0, 0) + spread(1, 1)) -
+                           std::sqrt(0.25 * std::pow(spread(0, 0) - spread(1, 1), 2) + spread(0, 1) * spread(0, 1));
+      if (least > 0.04 * a(0, 0) && cv::solve(a, b, x, cv::DECOMP_CHOLESKY)) {
+        touch.reach = x[0];
+        touch.shift_u = x[1];
+        touch.shift_v = x[2];
+      } else {
+        touch.reach = b[0] / a(0, 0);
+        touch.shift_u = touch.shift_v = 0;
+      }
+    }
+    return touch;
+  }
+  return touch;
+}
+
+double contact_distance(const std::vector<std::vector<Detection>>& frames, int size_class) {
+  std::vector<double> gaps;
+  double radius = 0;
+  for (const auto& f : frames)
+    for (std::size_t i = 0; i < f.size(); ++i) {
+      if (f[i].size_class != size_class) continue;
+      radius = f[i].radius;
+      for (std::size_t j = i + 1; j < f.size(); ++j) {
+        if (f[j].size_class != size_class) continue;
+        const double gap = std::hypot(f[i].u - f[j].u, f[i].v - f[j].v);
+        if (gap < 3.2 * f[i].radius) gaps.push_back(gap);
+      }
+    }
+  if (gaps.size() < 60) return 0;
+  const auto h = smooth_histogram(gaps, 3.2 * radius, std::max(0.5, 0.05 * radius));
+  const auto peak = std::max_element(h.begin(), h.end());
+  return (static_cast<double>(peak - h.begin()) + 0.5) * kBin;
+}
+
+}  // namespace tumble::analysis

@@ -1,0 +1,31 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "analysis/film_survey.h"
+#include "core/charge_motion.h"
+#include "core/config.h"
+
+namespace tumble::analysis {
+
+// Where the mill lies in the picture, and how large things are.
+struct MillView {
+  Circle mill;            // the inner shell [px]
+  double tip_radius = 0;  // of the lifter tips [px]
+  double metres_per_pixel = kNotGiven;
+  std::vector<double> radii;        // true ones of the size classes [px]
+  double shift_u = 0, shift_v = 0;  // from detected centres to true ones [px]
+};
+
+// Ball radii that the config names [m], ascending; empty where it names none.
+std::vector<double> known_radii(const Config& known);
+
+// The shell is where balls stop that lie against it, put onto the nearest circular edge; scale from what is known:
+// the mill's diameter, else the balls' sizes, else none.
+MillView find_view(const std::vector<std::vector<Detection>>& balls, const BallLook& look, const FilmSurvey& survey,
+                   const DrumPattern& drum, const Config& known, std::vector<std::string>& caveats);
+
+// Lengths of a motion measured without a scale become NaN; angles, pixels and shares stay.
+void forget_lengths(ChargeMotion& motion);
+
+}  // namespace tumble::analysis
