@@ -11,9 +11,15 @@ extern "C" {
 
 #include <algorithm>
 #include <array>
+#include <condition_variable>
+#include <deque>
+#include <exception>
+#include <functional>
+#include <memory>
 #include <mutex>
 #include <numeric>
 #include <string_view>
+#include <thread>
 
 #include "core/error.h"
 #include "io/output.h"
@@ -49,13 +55,89 @@ void check(const std::string& path, const FilmFormat& format) {
   }
 }
 
+struct FreeFrame {
+  void operator()(AVFrame* frame) const { av_frame_free(&frame); }
+};
+using Picture = std::unique_ptr<AVFrame, FreeFrame>;
+
+// Pictures on their way to an encoder that works in a thread of its own, while the next ones are drawn. The order of
+// pictures, and so the film, is the same with and without it.
+class Belt {
+ public:
+  explicit Belt(std::function<void(const AVFrame*)> work) : work_(std::move(work)), thread_([this] { run(); }) {}
+  ~Belt() { stop(); }
+  Belt(const Belt&) = delete;
+  Belt& operator=(const Belt&) = delete;
+
+  // Waits while the belt is full. Throws what the work threw.
+  void put(Picture picture) {
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, [this] { return waiting_.size() < kLength || failure_; });
+    if (failure_) std::rethrow_exception(failure_);
+    waiting_.push_back(std::move(picture));
+    changed_.notify_all();
+  }
+
+  // Waits until all that was put is done.
+  void drain() {
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, [this] { return (waiting_.empty() && !is_working_) || failure_; });
+    if (failure_) std::rethrow_exception(failure_);
+  }
+
+ private:
+  static constexpr std::size_t kLength = 8;  // enough to bridge a key frame, little enough memory at any size
+
+  void stop() {
+    {
+      const std::lock_guard lock(mutex_);
+      is_stopping_ = true;
+      waiting_.clear();
+    }
+    changed_.notify_all();
+    thread_.join();
+  }
+
+  void run() {
+    std::unique_lock lock(mutex_);
+    while (true) {
+      changed_.wait(lock, [this] { return is_stopping_ || !waiting_.empty(); });
+      if (is_stopping_) return;
+      const Picture picture = std::move(waiting_.front());
+      waiting_.pop_front();
+      is_working_ = true;
+      changed_.notify_all();
+      lock.unlock();
+      std::exception_ptr failure;
+      try {
+        work_(picture.get());
+      } catch (...) {
+        failure = std::current_exception();
+      }
+      lock.lock();
+      is_working_ = false;
+      if (failure) failure_ = failure;
+      changed_.notify_all();
+      if (failure) return;
+    }
+  }
+
+  std::function<void(const AVFrame*)> work_;
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::deque<Picture> waiting_;
+  bool is_working_ = false, is_stopping_ = false;
+  std::exception_ptr failure_;
+  std::thread thread_;  // last: it starts when all else is there
+};
+
 }  // namespace
 
 struct FilmWriter::Impl {
   Impl(const std::string& path, const FilmFormat& wanted) : name(path), format(wanted), file(path) {}
   ~Impl() {
+    belt.reset();  // the encoder must be at rest
     av_packet_free(&packet);
-    av_frame_free(&picture);
     avcodec_free_context(&encoder);
     if (muxer) avio_closep(&muxer->pb);
     avformat_free_context(muxer);
@@ -68,6 +150,7 @@ struct FilmWriter::Impl {
   }
 
   void open();
+  Picture picture_of(const Image& image);
   void encode(const AVFrame* frame);  // null: what the encoder still holds
 
   std::string name;
@@ -76,10 +159,10 @@ struct FilmWriter::Impl {
   AVFormatContext* muxer = nullptr;
   AVCodecContext* encoder = nullptr;
   AVStream* stream = nullptr;
-  AVFrame* picture = nullptr;
   AVPacket* packet = nullptr;
   std::int64_t frames = 0;
   bool finished = false;
+  std::unique_ptr<Belt> belt;  // none with one thread
 };
 
 void FilmWriter::Impl::open() {
@@ -92,8 +175,7 @@ void FilmWriter::Impl::open() {
   encoder = avcodec_alloc_context3(codec);
   stream = avformat_new_stream(muxer, nullptr);
   packet = av_packet_alloc();
-  picture = av_frame_alloc();
-  if (!encoder || !stream || !packet || !picture) throw WorkError(name, "not enough memory for the encoder");
+  if (!encoder || !stream || !packet) throw WorkError(name, "not enough memory for the encoder");
 
   const int common = std::gcd(format.fps_numerator, format.fps_denominator);
   const AVRational rate{format.fps_numerator / common, format.fps_denominator / common};
@@ -123,17 +205,26 @@ void FilmWriter::Impl::open() {
   stream->time_base = encoder->time_base;
   stream->avg_frame_rate = rate;
 
-  picture->format = AV_PIX_FMT_YUV420P;
-  picture->width = format.width;
-  picture->height = format.height;
-  expect(av_frame_get_buffer(picture, 0), "no memory for a picture");
-
   expect(avio_open(&muxer->pb, file.path().c_str(), AVIO_FLAG_WRITE), "cannot be opened for writing");
   AVDictionary* layout = nullptr;
   av_dict_set(&layout, "movflags", "+faststart", 0);
   const int begun = avformat_write_header(muxer, &layout);
   av_dict_free(&layout);
   expect(begun, "its header cannot be written");
+}
+
+Picture FilmWriter::Impl::picture_of(const Image& image) {
+  Picture picture(av_frame_alloc());
+  if (!picture) throw WorkError(name, "no memory for a picture");
+  picture->format = AV_PIX_FMT_YUV420P;
+  picture->width = format.width;
+  picture->height = format.height;
+  // Not through expect(): the stream belongs to the encoder's thread while that runs.
+  if (av_frame_get_buffer(picture.get(), 0) < 0) throw WorkError(name, "no memory for a picture");
+  yuv420_from_rgba(image, {picture->data[0], picture->data[1], picture->data[2], picture->linesize[0],
+                           picture->linesize[1], picture->linesize[2]});
+  picture->pts = frames++;
+  return picture;
 }
 
 void FilmWriter::Impl::encode(const AVFrame* frame) {
@@ -152,7 +243,9 @@ void FilmWriter::Impl::encode(const AVFrame* frame) {
 FilmWriter::FilmWriter(const std::string& path, const FilmFormat& format) {
   check(path, format);
   impl_ = std::make_unique<Impl>(path, format);
-  impl_->open();
+  Impl& my = *impl_;
+  my.open();
+  if (format.threads != 1) my.belt = std::make_unique<Belt>([&my](const AVFrame* frame) { my.encode(frame); });
 }
 
 FilmWriter::~FilmWriter() = default;
@@ -163,17 +256,19 @@ void FilmWriter::write(const Image& image) {
     throw WorkError(my.name, fmt::format("a picture of {}x{} px came into a film of {}x{} px", image.width,
                                          image.height, my.format.width, my.format.height));
   }
-  my.expect(av_frame_make_writable(my.picture), "no memory for a picture");
-  yuv420_from_rgba(image, {my.picture->data[0], my.picture->data[1], my.picture->data[2], my.picture->linesize[0],
-                           my.picture->linesize[1], my.picture->linesize[2]});
-  my.picture->pts = my.frames++;
-  my.encode(my.picture);
+  Picture picture = my.picture_of(image);
+  if (my.belt) {
+    my.belt->put(std::move(picture));
+  } else {
+    my.encode(picture.get());
+  }
 }
 
 void FilmWriter::finish() {
   Impl& my = *impl_;
   if (my.finished) return;
   if (my.frames == 0) throw WorkError(my.name, "a film needs at least one frame");
+  if (my.belt) my.belt->drain();
   my.encode(nullptr);
   my.expect(av_write_trailer(my.muxer), "its index cannot be written");
   avio_flush(my.muxer->pb);

@@ -11,7 +11,7 @@ struct FilmFormat {
   int fps_numerator = 60, fps_denominator = 1;
   std::string preset = "veryfast";  // x264's
   double crf = 20;                  // x264's constant rate factor, 0 to 51
-  int threads = 0;                  // of the encoder; 0 = its own choice
+  int threads = 0;                  // 1: encode inside write(); else beside it, in a thread of the writer's own
 };
 
 // H.264 in MP4: yuv420p, bt709, index in front (faststart). Bytes do not depend on the number of threads.

@@ -56,7 +56,7 @@ void draw_lifter(Canvas& canvas, std::span<const Eigen::Vector2d> lifter, double
   const Vec2 light(std::cos(kLightAngle), -std::sin(kLightAngle));
   const Vec2 middle = std::accumulate(corners.begin(), corners.end(), Vec2(0, 0)) / static_cast<double>(corners.size());
   const double width = canvas.stroke(1.6);
-  for (std::size_t i = 1; i < corners.size(); ++i) {  // edge 0 is the foot
+  const auto draw_edge = [&](std::size_t i) {
     const Vec2& a = corners[i];
     const Vec2& b = corners[(i + 1) % corners.size()];
     Vec2 outward(-(b - a).y(), (b - a).x());
@@ -64,7 +64,11 @@ void draw_lifter(Canvas& canvas, std::span<const Eigen::Vector2d> lifter, double
     if (outward.dot(a - middle) < 0) outward = -outward;
     const Rgba edge = scaled({255, 255, 255}, 0.55 + 0.4 * outward.dot(light));
     canvas.meshes.line(a - outward * width / 2, b - outward * width / 2, width, with_alpha(edge, 0.85));
-  }
+  };
+  // The faces, then the tip across their ends; edge 0 is the foot, inside the steel.
+  draw_edge(1);
+  draw_edge(corners.size() - 1);
+  for (std::size_t i = 2; i + 1 < corners.size(); ++i) draw_edge(i);
 }
 
 // Bolts sit where lifters do; a mill without lifters gets a dozen, so that its turning can be seen.

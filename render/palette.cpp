@@ -90,7 +90,7 @@ const Palette& sequential_palette() {
 
 const Palette& diverging_palette() {
   static const Palette palette =
-      blend({{46, 108, 190}, {118, 170, 220}, {226, 228, 230}, {236, 160, 108}, {205, 82, 62}});
+      blend({{46, 108, 190}, {118, 170, 220}, {226, 228, 230}, {236, 160, 108}, {190, 66, 52}});
   return palette;
 }
 

@@ -78,6 +78,7 @@ struct Renderer::Impl {
     canvas->text.flush();
   }
   Panel panel() const { return {setup, trace, plot, scale, style.slow}; }
+  double trail_seconds() const { return 1.2 * natural_time(); }
   double arrow_seconds() const { return 0.11 * natural_time(); }
   double natural_time() const { return std::sqrt(shape.radius / kGravity); }  // of a fall in this mill [s]
 
@@ -126,10 +127,18 @@ Renderer::Renderer(const RunSetup& setup, const Style& style) : impl_(std::make_
 Renderer::~Renderer() = default;
 
 void Renderer::set_scale(double low, double high) {
-  impl_->scale.low = low;
-  impl_->scale.high = high;
+  ColourScale& scale = impl_->scale;
+  if (scale.by == Colour::kSpeed) {
+    scale.low = low;
+    scale.high = high;
+  } else if (scale.by == Colour::kSpin) {  // pale is zero
+    scale.high = std::max(std::abs(low), std::abs(high));
+    scale.low = -scale.high;
+  }
   impl_->is_painted = false;
 }
+
+double Renderer::trail_seconds() const { return impl_->trail_seconds(); }
 
 const Image& Renderer::draw(const Frame& frame, const Moment& moment) {
   Impl& my = *impl_;
@@ -144,7 +153,7 @@ const Image& Renderer::draw(const Frame& frame, const Moment& moment) {
       my.been->restore({box.left, box.top, std::min(my.plot->x_of(frame.time), box.right), box.bottom});
     }
     draw_lifters(canvas, my.shape, frame.mill_angle);
-    if (overlay.tracks) draw_trails(canvas, my.setup.balls, frame, moment.past, 1.2 * my.natural_time(), my.scale);
+    if (overlay.tracks) draw_trails(canvas, my.setup.balls, frame, moment.past, my.trail_seconds(), my.scale);
     canvas.meshes.flush();
     draw_balls(canvas, my.setup.balls, frame, my.scale);
     canvas.discs.flush();

@@ -42,8 +42,12 @@ class Renderer {
   Renderer(const Renderer&) = delete;
   Renderer& operator=(const Renderer&) = delete;
 
-  // Sets the top of the colour scale, e.g. the 99th percentile of the whole run's speeds [m/s or rad/s].
+  // Sets the colour scale's ends, e.g. from 0 to the 99th percentile of the whole run's speeds [m/s or rad/s]. By spin
+  // the scale is symmetric, up to the larger of the two; by size and steel there is nothing to set.
   void set_scale(double low, double high);
+
+  // How far back trails reach: what Moment::past should cover [s].
+  double trail_seconds() const;
 
   // The picture; valid until the next draw. Throws WorkError when the context fails.
   const Image& draw(const Frame& frame, const Moment& moment);

@@ -1,0 +1,270 @@
+#include "render/renderer.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <thread>
+
+#include "core/error.h"
+#include "core/random.h"
+#include "core/units.h"
+#include "render/palette.h"
+#include "tests/support/mills.h"
+
+namespace tumble::render {
+namespace {
+
+struct Scene {
+  RunSetup setup;
+  Frame frame;
+};
+
+// Balls strewn over the inside; they may overlap, as the renderer does not mind.
+Scene scene_of(const Config& config, int count, std::uint64_t seed = 1) {
+  Scene scene;
+  Random random(seed);
+  const double reach = 0.8 * config.mill.diameter / 2;
+  scene.setup.config = config;
+  scene.setup.mill_speed = rad_s_from_rpm(speed_rpm(config.mill));
+  for (int i = 0; i < count; ++i) {
+    const double r = reach * std::sqrt(random.uniform()), a = random.uniform(0, 2 * kPi);
+    scene.setup.balls.radius.push_back(config.charge.balls[static_cast<std::size_t>(i) % 3].radius);
+    scene.setup.balls.mass.push_back(0.1);
+    scene.frame.x.push_back(r * std::cos(a));
+    scene.frame.y.push_back(r * std::sin(a));
+    scene.frame.vx.push_back(random.uniform(-2, 2));
+    scene.frame.vy.push_back(random.uniform(-2, 2));
+    scene.frame.angle.push_back(random.uniform(0, 6));
+    scene.frame.spin.push_back(random.uniform(-50, 50));
+  }
+  scene.frame.mill_angle = 0.3;
+  scene.frame.time = 1.5;
+  return scene;
+}
+
+int difference(const Image& a, const Image& b, int v, int u) {
+  int largest = 0;
+  for (int c = 0; c < 3; ++c) largest = std::max(largest, std::abs(a.row(v)[4 * u + c] - b.row(v)[4 * u + c]));
+  return largest;
+}
+
+int largest_difference(const Image& a, const Image& b, int left = 0) {
+  int largest = 0;
+  for (int v = 0; v < a.height; ++v) {
+    for (int u = left; u < a.width; ++u) largest = std::max(largest, difference(a, b, v, u));
+  }
+  return largest;
+}
+
+struct Blob {
+  double u = 0, v = 0, area = 0;
+};
+
+// Where two pictures differ: the mean of the places, not of the brightness.
+Blob changed(const Image& a, const Image& b, int threshold = 4) {
+  Blob blob;
+  for (int v = 0; v < a.height; ++v) {
+    for (int u = 0; u < a.width; ++u) {
+      if (difference(a, b, v, u) > threshold) {
+        blob.area += 1;
+        blob.u += u;
+        blob.v += v;
+      }
+    }
+  }
+  blob.u /= blob.area;
+  blob.v /= blob.area;
+  return blob;
+}
+
+struct Trace {
+  std::vector<double> time, torque;
+};
+
+Trace trace() {
+  Trace t;
+  for (int i = 0; i < 400; ++i) {
+    t.time.push_back(0.01 * i);
+    t.torque.push_back(10 + 3 * std::sin(0.37 * i) + std::sin(0.013 * i));
+  }
+  return t;
+}
+
+Image picture(const Scene& scene, const Style& style, const Moment& moment = {}) {
+  Renderer renderer(scene.setup, style);
+  return renderer.draw(scene.frame, moment);
+}
+
+// The rule of render/camera.h in numbers: R is 302.4 px of a 1280 x 720 picture, the axis in the middle of pixel edges
+// (400, 360).
+TEST(Renderer, PutsABallWhereTheCameraRuleSays) {
+  for (const bool mirror : {false, true}) {
+    Scene scene = scene_of(paper_mill(), 1);
+    Style style;
+    style.mirror = mirror;
+    scene.setup.balls.radius[0] = 0.025;
+    scene.frame.x[0] = 0.0712;
+    scene.frame.y[0] = -0.1334;
+    Scene empty = scene;
+    empty.frame.x[0] = 10;  // outside the picture
+    const Blob blob = changed(picture(scene, style), picture(empty, style));
+    const double scale = 302.4 / 0.2725;
+    EXPECT_NEAR(blob.u, 399.5 + (mirror ? -1 : 1) * 0.0712 * scale, 0.1);
+    EXPECT_NEAR(blob.v, 359.5 + 0.1334 * scale, 0.1);
+    EXPECT_NEAR(std::sqrt(blob.area / kPi), 0.025 * scale, 0.6);
+  }
+}
+
+// Seen from the other end, x, the marks and the mill's turning are mirrored; light and letters are not.
+TEST(Renderer, MirrorsTheMillAndNotItsFurniture) {
+  const Scene scene = scene_of(paper_mill(), 40);
+  Scene reflected = scene;
+  for (std::size_t i = 0; i < scene.frame.x.size(); ++i) {
+    reflected.frame.x[i] = -scene.frame.x[i];
+    reflected.frame.angle[i] = kPi - scene.frame.angle[i];
+  }
+  reflected.frame.mill_angle = -scene.frame.mill_angle;
+  Style mirrored, plain;
+  mirrored.overlay.text = plain.overlay.text = false;
+  mirrored.mirror = true;
+  const Moment marks{230, 40, {}, {}, {}}, reflected_marks{140, 310, {}, {}, {}};
+  // Corners of antialiased polygons blend in the other order, a few grey levels; a shape that stood wrongly by half a
+  // pixel would differ by 50 and more.
+  EXPECT_LE(largest_difference(picture(scene, mirrored), picture(reflected, plain)), 25);
+  EXPECT_GT(largest_difference(picture(scene, mirrored), picture(scene, plain)), 100);
+  // Pointers and arc are mirrored too (so toe and shoulder change places); labels go on stating the mill's own angles.
+  const Blob labels = changed(picture(scene, mirrored, marks), picture(reflected, plain, reflected_marks), 40);
+  const Blob pointers = changed(picture(scene, mirrored, marks), picture(scene, mirrored), 40);
+  EXPECT_LT(labels.area, 0.6 * pointers.area);
+
+  Style with_text;
+  with_text.mirror = true;
+  EXPECT_EQ(largest_difference(picture(scene, with_text), picture(scene, Style{}), 790), 0);
+}
+
+TEST(Renderer, DrawsTheSamePixelsInEveryThread) {
+  const Scene scene = scene_of(paper_mill(), 112);
+  const Trace t = trace();
+  const Moment moment{232, 38, t.time, t.torque, {}};
+  const Image alone = picture(scene, {}, moment);
+  Renderer built_here(scene.setup, {});
+  Image first, second;
+  std::thread one([&] { first = built_here.draw(scene.frame, moment); });
+  std::thread two([&] {
+    Renderer built_there(scene.setup, {});
+    for (int i = 0; i < 3; ++i) second = built_there.draw(scene.frame, moment);
+  });
+  one.join();
+  two.join();
+  EXPECT_TRUE(alone.rgba == first.rgba);
+  EXPECT_TRUE(alone.rgba == second.rgba);
+}
+
+// What stands still is painted once: nothing of an earlier frame, trace or scale may stay behind.
+TEST(Renderer, RemembersNothingOfEarlierFrames) {
+  const Scene scene = scene_of(paper_mill(), 30), other = scene_of(paper_mill(), 30, 2);
+  Frame late = other.frame;
+  late.time = 3.5;
+  const Trace t = trace();
+  std::vector<double> half(t.torque);
+  for (double& value : half) value /= 2;
+  const Moment moment{232, 38, t.time, t.torque, {}};
+  Renderer renderer(scene.setup, {});
+  const Image fresh = renderer.draw(scene.frame, moment);
+  renderer.set_scale(0, 9);
+  const Image drawn_late = renderer.draw(late, {100, 20, t.time, half, {}});
+  EXPECT_GT(largest_difference(fresh, drawn_late), 100);
+  renderer.set_scale(0, std::sqrt(2 * kGravity * 0.2725));  // what a renderer starts with
+  EXPECT_EQ(largest_difference(renderer.draw(scene.frame, moment), fresh), 0);
+}
+
+TEST(Renderer, ColourBarRunsFromDarkToLight) {
+  const Image image = picture(scene_of(paper_mill(), 3), {});
+  double before = 0;
+  for (int u = 801; u < 1239; u += 4) {
+    const std::uint8_t* p = image.row(655) + 4 * u;
+    const double now = lightness({p[0], p[1], p[2]});
+    EXPECT_GT(now, before - 0.002) << u;
+    before = now;
+  }
+  EXPECT_GT(before, 0.9);
+}
+
+TEST(Renderer, MarksTurnAndFadeOnSmallBalls) {
+  for (const double radius : {0.018, 0.003}) {
+    Scene scene = scene_of(paper_mill(), 1);
+    scene.setup.balls.radius[0] = radius;
+    Scene turned = scene;
+    turned.frame.angle[0] += 1.3;
+    const int difference = largest_difference(picture(scene, {}), picture(turned, {}));
+    if (radius > 0.01) {
+      EXPECT_GT(difference, 40);
+    } else {
+      EXPECT_EQ(difference, 0);
+    }
+  }
+}
+
+TEST(Renderer, TorqueCursorFollowsTheClock) {
+  Scene scene = scene_of(paper_mill(), 1);
+  const Trace t = trace();
+  const auto cursor = [&](double time) {  // the accent's amber in the plot's first row
+    scene.frame.time = time;
+    const Image image = picture(scene, {}, {kNotGiven, kNotGiven, t.time, t.torque, {}});
+    for (int u = 800; u < 1245; ++u) {
+      const std::uint8_t* p = image.row(300) + 4 * u;
+      if (p[0] > 150 && p[2] < 90) return u;
+    }
+    return -1;
+  };
+  const int start = cursor(0), middle = cursor(1.995), end = cursor(3.99);
+  EXPECT_GT(start, 800);
+  EXPECT_NEAR(end, 1239, 2);
+  EXPECT_NEAR(middle, (start + end) / 2.0, 1);
+}
+
+TEST(Renderer, TakesEveryMillThatAConfigCanHold) {
+  Config smooth = paper_mill();
+  smooth.mill.lifters = {};
+  Config triangles = paper_mill();
+  triangles.mill.lifters.profile = LifterProfile::kTriangle;
+  Config trapezoids = paper_mill();
+  trapezoids.mill.lifters.profile = LifterProfile::kTrapezoid;
+  trapezoids.mill.lifters.leading_angle_deg = 20;
+  trapezoids.mill.lifters.count = 1;
+  for (const Config& config : {smooth, triangles, trapezoids}) {
+    const Scene scene = scene_of(config, 5);
+    std::vector<Frame> past(3, scene.frame);
+    for (std::size_t i = 0; i < past.size(); ++i) past[i].time -= 0.01 * static_cast<double>(past.size() - i);
+    for (const auto& [width, height] : {std::pair{64, 64}, {640, 360}, {720, 1280}, {1920, 1080}}) {
+      for (const Colour colour : {Colour::kSpeed, Colour::kSize, Colour::kSpin, Colour::kSteel}) {
+        Style style;
+        style.width = width;
+        style.height = height;
+        style.colour = colour;
+        style.overlay.tracks = style.overlay.velocity = true;
+        const Image image = picture(scene, style, {359.9, 89, {}, {}, past});
+        Scene gone = scene;
+        gone.frame.x[0] = 10;
+        EXPECT_GT(changed(image, picture(gone, style, {359.9, 89, {}, {}, past})).area, 5);
+      }
+    }
+  }
+}
+
+TEST(Renderer, RefusesPicturesThatNoFilmCanHold) {
+  const Scene scene = scene_of(paper_mill(), 1);
+  Style odd;
+  odd.width = 1281;
+  EXPECT_THROW(picture(scene, odd), InputError);
+  Style huge;
+  huge.height = 100000;
+  EXPECT_THROW(picture(scene, huge), InputError);
+  Style frozen;
+  frozen.slow = 0;
+  EXPECT_THROW(picture(scene, frozen), InputError);
+}
+
+}  // namespace
+}  // namespace tumble::render
