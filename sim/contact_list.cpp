@@ -42,7 +42,7 @@ void renew_ball_contacts(const MillModel& model, const Charge& charge, double sk
     search.grid.partners_of(charge, i, skin, search.found);
     for (const int j : search.found) {
       const double effective_mass = charge.mass[i] * charge.mass[j] / (charge.mass[i] + charge.mass[j]);
-      append(next, {i, j, charge.radius[i] + charge.radius[j], damping(model.ball, effective_mass)});
+      append(next, {i, j, charge.radius[i] + charge.radius[j], damping(model.ball, effective_mass, model.time_step)});
     }
   }
   carry_over(list, next);
@@ -57,7 +57,7 @@ void renew_wall_contacts(const MillModel& model, const Charge& charge, double mi
     search.found.clear();
     features_near(model.shell, mill_angle, charge.x[i], charge.y[i], charge.radius[i] + skin, search.found);
     for (const int feature : search.found)
-      append(next, {i, feature, charge.radius[i], damping(model.wall, charge.mass[i])});
+      append(next, {i, feature, charge.radius[i], damping(model.wall, charge.mass[i], model.time_step)});
   }
   carry_over(list, next);
   std::swap(list, next);

@@ -10,7 +10,7 @@
 
 namespace tumble::sim {
 
-void look_for_locked_balls(const Mill& mill, LockedBalls& locked) {
+void look_for_locked_balls(const RunningMill& mill, LockedBalls& locked) {
   const Charge& c = mill.charge;
   const double angle = mill_angle(mill.model, mill.step);
   if (locked.home.size() != c.size()) {
@@ -41,8 +41,7 @@ Steadiness judge(const History& history, std::size_t from, std::size_t to, std::
   s.torque_z = drift_z(stretch(history.torque));
   s.closure_z = drift_z(stretch(history.closure));
   const auto locked = stretch(history.locked);
-  const std::size_t quarter = locked.size() / 4;
-  s.locked_change = mean(locked.last(quarter)) - mean(locked.first(quarter));
+  if (!locked.empty()) s.locked_change = locked.back() - mean(locked.first((locked.size() + 3) / 4));
   s.steady = std::abs(s.torque_z) < z_limit && std::abs(s.closure_z) < z_limit &&
              std::abs(s.locked_change) < std::max(1.0, 0.01 * double(balls));
   return s;

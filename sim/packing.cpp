@@ -8,7 +8,7 @@
 #include "core/error.h"
 #include "core/random.h"
 #include "core/units.h"
-#include "sim/mill.h"
+#include "sim/running_mill.h"
 
 namespace tumble::sim {
 namespace {
@@ -157,7 +157,7 @@ Charge place_loosely(const Config& config, const MillModel& model, const Balls& 
 Charge settle(const MillModel& model, Charge charge, const Progress& progress) {
   MillModel resting = model;
   resting.speed = 0;
-  Mill mill = make_mill(resting, std::move(charge));
+  RunningMill mill = start_mill(resting, std::move(charge));
   double scale = 0;  // sum of m g r [J]
   for (std::size_t i = 0; i < mill.charge.size(); ++i)
     scale += mill.charge.mass[i] * model.gravity * mill.charge.radius[i];

@@ -2,7 +2,7 @@
 #include <cstdint>
 
 #include "sim/history.h"
-#include "sim/mill.h"
+#include "sim/running_mill.h"
 
 namespace tumble::sim {
 
@@ -14,7 +14,7 @@ struct Sums {
 
 // A run at one moment: the mill and how far the plan has come. All that a checkpoint must hold.
 struct RunState {
-  Mill mill;
+  RunningMill mill;
   History history;
   LockedBalls locked;
   Sums frame, sample;                // since the last frame, since the last sample

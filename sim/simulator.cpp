@@ -14,7 +14,8 @@ namespace tumble::sim {
 namespace {
 
 constexpr double kSecondsBetweenCheckpoints = 2;  // of wall time: cheap beside what it saves
-constexpr double kAutoShortest = 10;              // revolutions of spin-up before "auto" may find a mill steady
+constexpr double kAutoShortest = 10;              // revolutions of spin-up before "auto" may find a mill steady,
+constexpr double kAutoShortestLocked = 30;        // with locked balls: pockets fill over tens of revolutions
 constexpr double kAutoLongest = 200;              // and after which it gives up
 constexpr double kAutoZ = 2;                      // drift that "auto" takes for none [standard errors]
 constexpr double kCaveatZ = 3;                    // drift of the averages that is reported
@@ -77,7 +78,7 @@ void run_to(RunState& run, std::int64_t step) {
 }
 
 Frame frame_of(const RunState& run) {
-  const Mill& mill = run.mill;
+  const RunningMill& mill = run.mill;
   const MillModel& model = mill.model;
   const Charge& c = mill.charge;
   Frame f;
@@ -114,7 +115,8 @@ bool spin_up_is_over(const Config& config, RunState& run) {
   if (!config.run.spin_up_auto) return run.mill.step >= step_after(model, config.run.spin_up);
   const std::size_t samples = run.history.size();
   const double revolutions = double(samples) / kSamplesPerRevolution;
-  if (samples % kSamplesPerRevolution != 0 || revolutions < kAutoShortest) return false;
+  if (samples % kSamplesPerRevolution != 0) return false;
+  if (revolutions < (run.locked.count > 0 ? kAutoShortestLocked : kAutoShortest)) return false;
   if (judge(run.history, samples / 2, samples, run.mill.charge.size(), kAutoZ).steady) return true;
   run.spin_up_gave_up = revolutions >= kAutoLongest;
   return run.spin_up_gave_up;
@@ -191,10 +193,10 @@ RunResult simulate(const Config& config, const RunSink& sink, const Checkpoint* 
 
   RunState run;
   if (resume) {
-    run.mill = make_mill(model, make_charge(balls));
+    run.mill = start_mill(model, make_charge(balls));
     restore(run, resume->words);
   } else {
-    run.mill = make_mill(model, settle(model, place_loosely(config, model, balls), sink.progress));
+    run.mill = start_mill(model, settle(model, place_loosely(config, model, balls), sink.progress));
   }
   const std::int64_t frames = frame_count(config, model);
   if (sink.setup) sink.setup({config, balls, model.time_step, model.speed, frames, dissipation_causes()});

@@ -33,9 +33,16 @@ inline double damping_ratio(double restitution) {
   return -l / std::sqrt(l * l + 3.14159265358979323846 * 3.14159265358979323846);
 }
 
-// C [N s/m] of eq. 13.
-inline double damping(const LinearSpringDashpot& law, double effective_mass) {
-  return 2 * damping_ratio(law.restitution) * std::sqrt(effective_mass * law.normal_stiffness);
+// C [N s/m] of eq. 13, less what the time step adds to it. Central differences with the velocity foreseen from the last
+// step act on an oscillator as if its stiffness were larger by q (1/12 - 5/3 z^2) and its damping by q (1/2 - 5/3 z^2),
+// q = (w dt)^2 (modified equation, second order); the restitution hangs on their ratio C / sqrt(k) alone. The first and
+// the last step, where the foreseen velocity knows nothing of the dashpot's jump, add 0.76 q z (1 - z^2)^(3/2):
+// measured, as the mean over all phases of the impact within a step, for e from 0.1 to 0.8.
+inline double damping(const LinearSpringDashpot& law, double effective_mass, double time_step) {
+  const double z = damping_ratio(law.restitution);
+  const double q = law.normal_stiffness / effective_mass * time_step * time_step;
+  return 2 * z * std::sqrt(effective_mass * law.normal_stiffness) /
+         (1 + q * ((11 - 20 * z * z) / 24 + 0.76 * z * std::pow(1 - z * z, 1.5)));
 }
 
 // What a contact remembers from step to step; all zero while apart.
@@ -66,13 +73,16 @@ struct Reaction {
 inline Reaction touch(const LinearSpringDashpot& law, const Touch& now, bool first, double time_step,
                       ContactState& state) {
   const double k_n = law.normal_stiffness, k_t = law.tangential_stiffness;
-  // In its first step a contact exists for the part d / (v dt) of the interval before, in its last for that part of the
-  // interval after: the dashpot's impulse is (1/2 + part) C v dt. Without this the restitution errs in the first order
-  // of the time step, by up to z pi dt / (contact time).
-  const bool at_the_edge = now.overlap < std::abs(now.closing) * time_step;
-  const double dashpot =
-      now.damping *
-      (at_the_edge ? 0.5 * now.closing + std::copysign(now.overlap / time_step, now.closing) : now.closing);
+  // A contact begins and ends within a step, and whole steps of dashpot would make the restitution err in the first
+  // order of the time step, by up to pi z dt / (contact time). With s = d / (|v| dt) steps to or from the edge, the
+  // weights below add up to the contact's true time: w(s) + w(s + 1) = s + 3/2. They are continuous and vanish at the
+  // edge, so that it does not matter whether a last sliver of overlap is met or missed.
+  const double reach = std::abs(now.closing) * time_step;
+  double dashpot = now.damping * now.closing;
+  if (now.overlap < 2 * reach) {
+    const double s = now.overlap / reach;
+    dashpot *= s < 1 ? 1.5 * s : 2 - 0.5 * s;
+  }
   Reaction r;
   r.normal = k_n * now.overlap + dashpot;
   const double limit = law.friction * std::abs(r.normal);

@@ -1,4 +1,4 @@
-#include "sim/mill.h"
+#include "sim/running_mill.h"
 
 #include <fmt/format.h>
 
@@ -10,20 +10,20 @@
 namespace tumble::sim {
 namespace {
 
-[[noreturn]] void left_physics(const Mill& mill, const std::string& what) {
+[[noreturn]] void left_physics(const RunningMill& mill, const std::string& what) {
   throw WorkError("simulation",
                   fmt::format("step {}, time {:.6g} s: {}; take a smaller run.time_step (now {:.3g} s) or a larger "
                               "contact.normal_stiffness",
                               mill.step, double(mill.step) * mill.model.time_step, what, mill.model.time_step));
 }
 
-[[noreturn]] void overlap_too_large(const Mill& mill, int i, int j, double overlap, double radius) {
+[[noreturn]] void overlap_too_large(const RunningMill& mill, int i, int j, double overlap, double radius) {
   const std::string other = j < 0 ? std::string("the wall") : fmt::format("ball {}", j);
   left_physics(mill, fmt::format("ball {} overlaps {} by {:.3g} mm, more than half a radius ({:.3g} mm)", i, other,
                                  1e3 * overlap, 1e3 * radius / 2));
 }
 
-void drift(Mill& mill) {
+void drift(RunningMill& mill) {
   Charge& c = mill.charge;
   const double dt = mill.model.time_step;
   for (std::size_t i = 0; i < c.size(); ++i) {
@@ -33,7 +33,7 @@ void drift(Mill& mill) {
   }
 }
 
-void renew_lists_if_needed(Mill& mill, double angle) {
+void renew_lists_if_needed(RunningMill& mill, double angle) {
   const MillModel& m = mill.model;
   mill.moved += std::max(mill.fastest, std::abs(m.speed) * m.shell.radius) * m.time_step;
   if (!mill.stale && mill.moved <= mill.skin / 2) return;
@@ -48,13 +48,13 @@ void renew_lists_if_needed(Mill& mill, double angle) {
   mill.stale = false;
 }
 
-void end_impact(const Mill& mill, std::array<double, kBins>& bins, ContactState& state) {
+void end_impact(const RunningMill& mill, std::array<double, kBins>& bins, ContactState& state) {
   if (mill.ledger.counting_impacts) bins[spectrum_bin(state.lost)] += 1;
   state = {};
 }
 
 // Forces between balls: gather, law, scatter. The scatter runs in the order of the list, as a sum per ball would.
-void ball_forces(Mill& mill) {
+void ball_forces(RunningMill& mill) {
   const MillModel& m = mill.model;
   const double dt = m.time_step;
   Charge& c = mill.charge;
@@ -119,7 +119,7 @@ void ball_forces(Mill& mill) {
 }
 
 // Forces of shell and lifters on the balls, and their moment about the axis.
-void wall_forces(Mill& mill, double angle) {
+void wall_forces(RunningMill& mill, double angle) {
   const MillModel& m = mill.model;
   const Shell& shell = m.shell;
   const double dt = m.time_step;
@@ -194,7 +194,7 @@ void wall_forces(Mill& mill, double angle) {
   mill.ledger.drive_work += torque * m.speed * dt;
 }
 
-void kick(Mill& mill) {
+void kick(RunningMill& mill) {
   Charge& c = mill.charge;
   const double dt = mill.model.time_step;
   const double half_fall = 0.5 * mill.model.gravity * dt;
@@ -224,8 +224,8 @@ void kick(Mill& mill) {
 
 }  // namespace
 
-Mill make_mill(const MillModel& model, Charge charge) {
-  Mill mill;
+RunningMill start_mill(const MillModel& model, Charge charge) {
+  RunningMill mill;
   mill.model = model;
   mill.charge = std::move(charge);
   Charge& c = mill.charge;
@@ -242,7 +242,7 @@ Mill make_mill(const MillModel& model, Charge charge) {
   return mill;
 }
 
-void advance(Mill& mill) {
+void advance(RunningMill& mill) {
   ++mill.step;
   const double angle = mill_angle(mill.model, mill.step);
   drift(mill);
@@ -252,7 +252,7 @@ void advance(Mill& mill) {
   kick(mill);
 }
 
-Energies energies_of(const Mill& mill) {
+Energies energies_of(const RunningMill& mill) {
   const Charge& c = mill.charge;
   Energies e;
   for (std::size_t i = 0; i < c.size(); ++i) {

@@ -9,7 +9,7 @@
 namespace tumble::sim {
 
 // A running mill. Everything that the future depends on: copied, it runs on in the same way.
-struct Mill {
+struct RunningMill {
   MillModel model;
   Charge charge;
   ContactList ball_contacts, wall_contacts;
@@ -26,15 +26,15 @@ struct Mill {
 };
 
 // Balls as they lie at step 0, with their velocities at that moment (taken from `vx`, `vy`, `spin`).
-Mill make_mill(const MillModel& model, Charge charge);
+RunningMill start_mill(const MillModel& model, Charge charge);
 
 // One time step: drift, contact forces, kick. Throws WorkError when the run leaves physics.
-void advance(Mill& mill);
+void advance(RunningMill& mill);
 
 // Torque and closure need no more than the ledger; these are the energies at the positions' own time [J].
 struct Energies {
   double kinetic = 0, potential = 0, elastic = 0;
 };
-Energies energies_of(const Mill& mill);
+Energies energies_of(const RunningMill& mill);
 
 }  // namespace tumble::sim
