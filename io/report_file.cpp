@@ -89,7 +89,8 @@ std::string lead_of(const RunReport& r) {
       "({:.4g} rev/min) in a mill of {:.4g} m {}.",
       r.setup->balls.size(), c.run.revolutions, r.result->spin_up_revolutions, speed_fraction(c.mill),
       speed_rpm(c.mill), c.mill.diameter, lifters_of(c.mill));
-  if (std::isfinite(r.truth->torque.value)) text += " To turn one slice took " + with_error(r.truth->torque) + " N m.";
+  if (std::isfinite(r.truth->torque.value))
+    text += " To turn one slice took " + with_error(r.truth->torque) + " N\u00a0m.";
   const Estimate &toe = r.film->toe_deg, &shoulder = r.film->shoulder_deg;
   if (!std::isfinite(toe.value) || !std::isfinite(shoulder.value))
     return text + " The film alone did not give both toe and shoulder.";
@@ -126,12 +127,12 @@ std::string keys_of(const RunReport& r) {
   const ChargeMotion &truth = *r.truth, &film = *r.film;
   std::string out;
   const double gap = std::abs(truth.torque.value / truth.torque_closure.value - 1);
-  out += key("Torque of one slice", with_error(truth.torque) + " N m",
-             "from the charge’s weight " + number(truth.torque_closure.value, truth.torque.se) + " N m" +
+  out += key("Torque of one slice", with_error(truth.torque) + " N\u00a0m",
+             "from the charge’s weight " + number(truth.torque_closure.value, truth.torque.se) + " N\u00a0m" +
                  (std::isfinite(gap) ? fmt::format(", {:.2g} % apart", 100 * gap) : ""));
   const Estimate power{truth.torque.value * r.setup->mill_speed, truth.torque.se * r.setup->mill_speed};
   const double slices = slice_count(r.setup->config);
-  out += key("Power of one slice", with_error(power) + " W",
+  out += key("Power of one slice", with_error(power) + "\u00a0W",
              slices == 1 ? "the slice is the mill"
                          : fmt::format("the mill’s {:.3g} slices: {} W", slices,
                                        number(power.value * slices, power.se * slices)));
@@ -215,7 +216,7 @@ std::string facts_of(const RunReport& r) {
 std::string torque_caption(const ChargeMotion& truth) {
   std::string text = "Mean torque of each frame’s interval that the drive gives to one slice.";
   if (std::isfinite(truth.torque.value))
-    text += " Coloured: its mean, " + with_error(truth.torque) + " N m, and one standard error to each side.";
+    text += " Coloured: its mean, " + with_error(truth.torque) + " N\u00a0m, and one standard error to each side.";
   return text;
 }
 
@@ -244,6 +245,12 @@ Json per_frame(const ChargeMotion& m) {
   return {{"time", column(m.profile, [](const ProfileRow& row) { return row.time; })},
           {"toe", near_mean(m, m.toe_deg, &ProfileRow::toe_deg)},
           {"shoulder", near_mean(m, m.shoulder_deg, &ProfileRow::shoulder_deg)}};
+}
+
+// Time from one lifter to the next; a twentieth of a turn without lifters. Of a mill at rest: 1 s.
+double lifter_passage(const RunSetup& setup) {
+  const int lifters = std::max(setup.config.mill.lifters.count, 0);
+  return setup.mill_speed > 0 ? 2 * kPi / (setup.mill_speed * (lifters > 0 ? lifters : 20)) : 1.0;
 }
 
 // Opposite to the middle of the charge, on a round number: where a plot over all directions is best cut open.
@@ -295,6 +302,7 @@ Json data_of(const RunReport& r, const Json& spectrum) {
           {"torque",
            {{"time", column(truth.torque_series, [](const TorqueRow& row) { return row.time; })},
             {"torque", column(truth.torque_series, [](const TorqueRow& row) { return row.torque; })},
+            {"passage", plotted(lifter_passage(*r.setup))},
             {"mean", {plotted(truth.torque.value), plotted(std::isfinite(truth.torque.se) ? truth.torque.se : 0.0)}}}},
           {"spectrum", spectrum}};
 }

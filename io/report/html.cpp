@@ -106,7 +106,7 @@ std::string number(double value, double se) {
 
 std::string with_error(const Estimate& e) {
   if (!std::isfinite(e.value) || !(e.se > 0) || !std::isfinite(e.se)) return number(e.value);
-  return number(e.value, e.se) + " \u00b1 " + number(e.se, e.se);
+  return number(e.value, e.se) + "\u00a0\u00b1\u00a0" + number(e.se, e.se);
 }
 
 }  // namespace tumble::io::report

@@ -4,7 +4,7 @@
   const root = getComputedStyle(document.documentElement);
   const colour = name => () => root.getPropertyValue("--" + name).trim();
   const ink = colour("ink"), soft = colour("soft"), grid = colour("grid"), truth = colour("truth"), found = colour("found");
-  const faint = of => () => of() + "22";
+  const faint = of => () => of() + "22", pale = of => () => of() + "88";
   const font = "12px system-ui, -apple-system, 'Segoe UI', Roboto, 'DejaVu Sans', sans-serif";
   const digits = n => (u, v) => v == null ? "–" : v.toFixed(n);
   const degree = v => ((v % 360) + 360) % 360;
@@ -50,7 +50,7 @@
   const plot = (id, options, columns) => {
     const place = document.getElementById(id);
     if (!place || !columns[0].length) return null;
-    const size = () => ({ width: Math.max(place.clientWidth, 200), height: place.clientHeight - 34 });
+    const size = () => ({ width: Math.max(place.clientWidth, 200), height: place.classList.contains("tall") ? 300 : 230 });
     const u = new uPlot(Object.assign({ cursor: { y: false, points: { size: 6 } } }, size(), options), columns, place);
     new ResizeObserver(() => u.setSize(size())).observe(place);
     plots.push(u);
@@ -74,17 +74,29 @@
   const per_frame = (id, key) => plot(id, {
     scales: { x: { time: false } },
     axes: [axis("time, s"), axis("degrees", { size: 54 })],
-    series: [{ label: "time", value: digits(3) }, line("simulation", truth, { value: digits(2) }), line("film", found, { value: digits(2) })],
+    series: [{ label: "time", value: digits(3) }, line("simulation", pale(truth), { width: 3, value: digits(2) }), line("film", found, { width: 1.2, value: digits(2) })],
   }, uPlot.join([[data.truth.time, data.truth[key]], [data.film.time, data.film[key]]]));
   const timed = [per_frame("plot-toe", "toe"), per_frame("plot-shoulder", "shoulder")];
 
-  const [mean, error] = data.torque.mean;
+  // A running mean over one lifter's passage, for the eye: single frames jump with single impacts.
+  const smooth = (time, values, width) => {
+    const out = [];
+    let sum = 0, low = 0, high = 0;
+    for (const t of time) {
+      while (high < time.length && time[high] <= t + width / 2) sum += values[high++] ?? 0;
+      while (time[low] < t - width / 2) sum -= values[low++] ?? 0;
+      out.push(sum / (high - low));
+    }
+    return out;
+  };
+  const [mean, error] = data.torque.mean, passage = data.torque.passage;
   timed.push(plot("plot-torque", {
     scales: { x: { time: false } },
     axes: [axis("time, s"), axis("torque, N m", { size: 54 })],
-    series: [{ label: "time", value: digits(3) }, line("torque of one slice", truth, { width: 1, value: digits(3) })],
-    hooks: { drawSeries: [band(mean == null ? null : mean - error, mean + error, found)] },
-  }, [data.torque.time, data.torque.torque]));
+    series: [{ label: "time", value: digits(3) }, line("each frame", pale(truth), { width: 0.7, value: digits(3) }),
+             line("over one lifter’s passage", ink, { value: digits(3) })],
+    hooks: { drawClear: [band(mean == null ? null : mean - error, mean + error, found)] },
+  }, [data.torque.time, data.torque.torque, smooth(data.torque.time, data.torque.torque, passage)]));
 
   const tens = v => v == null ? "" : v.toExponential(0).replace("e+", "e");
   plot("plot-spectrum", {
