@@ -9,6 +9,9 @@
 
 namespace tumble::analysis {
 
+// Without lifters a passage is taken as that of 18, a usual number: per-frame values need some window.
+inline constexpr int kUsualLifters = 18;
+
 // What the ring, the grid and the windows are laid out by. Lengths in the unit of the discs.
 struct MillGeometry {
   double radius = 0;           // inside the shell

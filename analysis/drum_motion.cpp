@@ -193,4 +193,36 @@ double drum_angle(const DrumPattern& pattern, const DrumStrip& strip, double exp
   return -best_match(s, -expected, 0.35 * 2 * kPi / period);
 }
 
+double lifter_phase(const DrumPattern& pattern, const std::vector<DrumStrip>& strips, const cv::Range& rows) {
+  if (!pattern.found || pattern.lifter_count < 1 || rows.empty()) return kNotGiven;
+  const std::size_t n = DrumStrip::kAngles;
+  std::vector<double> sum(n, 0.0), squares(n, 0.0);
+  Complex phase = 0;
+  for (int a = rows.start; a < rows.end; ++a) {
+    std::fill(sum.begin(), sum.end(), 0.0);
+    std::fill(squares.begin(), squares.end(), 0.0);
+    for (std::size_t t = 0; t < strips.size(); ++t) {
+      const auto turn =
+          static_cast<long>(std::lround(pattern.step * static_cast<double>(t) / (2 * kPi) * static_cast<double>(n)));
+      const float* row = strips[t].rows.ptr<float>(a);
+      for (std::size_t k = 0; k < n; ++k) {
+        const auto from = static_cast<std::size_t>(
+            ((static_cast<long>(k) + turn) % static_cast<long>(n) + static_cast<long>(n)) % static_cast<long>(n));
+        sum[k] += row[from];
+        squares[k] += row[from] * row[from];
+      }
+    }
+    const double frames = static_cast<double>(strips.size());
+    for (std::size_t k = 0; k < n; ++k) {
+      const double spread = std::sqrt(std::max(0.0, squares[k] / frames - sum[k] * sum[k] / (frames * frames)));
+      phase -=
+          spread * std::polar(1.0, -2 * kPi * pattern.lifter_count * static_cast<double>(k) / static_cast<double>(n));
+    }
+  }
+  // spread ~ -cos(count (k - middle)): the sum's phase is -count x middle.
+  const double spacing = 2 * kPi / pattern.lifter_count;
+  const double middle = -std::arg(phase) / pattern.lifter_count;
+  return middle < 0 ? middle + spacing : middle;
+}
+
 }  // namespace tumble::analysis

@@ -43,4 +43,10 @@ DrumPattern learn_drum(const std::vector<DrumStrip>& strips, int known_lifters, 
 // Turn of the drum in one picture against the pattern, nearest to `expected` [rad].
 double drum_angle(const DrumPattern& pattern, const DrumStrip& strip, double expected);
 
+// Angle of one lifter's middle where the drum's turn is zero [rad], in [0, spacing). Balls pass in front of everything
+// inside the shell but the lifters: turned back with the drum, the pictures change least there. `rows`: the annuli
+// that lie between lifter tips and shell. Only a guess, to within a quarter spacing: charge lies against the leading
+// faces, so the change is lopsided. NaN without a pattern or lifter count.
+double lifter_phase(const DrumPattern& pattern, const std::vector<DrumStrip>& strips, const cv::Range& rows);
+
 }  // namespace tumble::analysis

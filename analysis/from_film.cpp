@@ -7,6 +7,7 @@
 #include "analysis/charge_motion.h"
 #include "analysis/charge_statistics.h"
 #include "analysis/film_survey.h"
+#include "analysis/lifters.h"
 #include "analysis/mill_scale.h"
 #include "analysis/tracking.h"
 #include "analysis/view.h"
@@ -66,7 +67,17 @@ Estimate turn_per_frame(const std::vector<double>& angle) {
   return {slope, se * std::sqrt(12.0) / n};
 }
 
-std::vector<std::vector<Sighting>> sightings_of(const Pass& pass, const MillView& view, bool clockwise) {
+// Annuli of the strips between lifter tips and shell.
+cv::Range lifter_rows(const FilmSurvey& survey, const MillView& view) {
+  const double inner = strip_inner(survey.centre), outer = strip_outer(survey.centre);
+  const auto row = [&](double r) { return (r - inner) / (outer - inner) * DrumStrip::kAnnuli; };
+  const int from = std::max(0, static_cast<int>(std::ceil(row(view.tip_radius) - 0.2)));
+  const int to = std::min(DrumStrip::kAnnuli, static_cast<int>(std::floor(row(view.mill.radius) + 0.2)));
+  return from < to ? cv::Range(from, to) : cv::Range(0, 0);
+}
+
+std::vector<std::vector<Sighting>> sightings_of(const Pass& pass, const MillView& view, const LifterLattice& lifters,
+                                                bool clockwise) {
   std::vector<std::vector<Sighting>> frames(pass.balls.size());
   for (std::size_t f = 0; f < pass.balls.size(); ++f)
     for (const Detection& d : pass.balls[f]) {
@@ -77,6 +88,7 @@ std::vector<std::vector<Sighting>> sightings_of(const Pass& pass, const MillView
       s.size_class = d.size_class;
       s.score = d.score;
       if (std::hypot(s.x, s.y) + s.radius > view.mill.radius + 0.3 * s.radius) continue;
+      if (!pass.angle.empty() && within_lifter(d, view, lifters, pass.angle[f])) continue;
       frames[f].push_back(s);
     }
   return frames;
@@ -129,7 +141,9 @@ ChargeMotion measure_film(const std::string& path, const FilmOptions& options, c
   const double critical = critical_speed_rpm(mill);
   motion.speed_fraction = {motion.speed_rpm.value / critical, motion.speed_rpm.se / critical};
 
-  auto frames = sightings_of(pass, view, clockwise);
+  const double guess = lifter_phase(drum, survey.strips, lifter_rows(survey, view));
+  const LifterLattice lifters = find_lifters(pass.balls, pass.angle, view, drum.lifter_count, guess);
+  auto frames = sightings_of(pass, view, lifters, clockwise);
   MotionModel model;
   model.turn = drum.found ? sense * turn.value : 0.0;
   model.tip_radius = view.tip_radius;
@@ -160,8 +174,8 @@ ChargeMotion measure_film(const std::string& path, const FilmOptions& options, c
     throw InputError(path, "shows no balls; balls of at least 3 pixels' radius were expected in the mill");
   motion.filling = mean_of_series(fillings);
   geometry.mean_diameter = diameters / count;
-  const int lifters = motion.lifter_count > 0 ? motion.lifter_count : 18;
-  if (model.turn > 0) geometry.passage_frames = 2 * kPi / lifters / model.turn;
+  const int passages = motion.lifter_count > 0 ? motion.lifter_count : kUsualLifters;
+  if (model.turn > 0) geometry.passage_frames = 2 * kPi / passages / model.turn;
   if (!std::isnan(view.metres_per_pixel) && !std::isnan(fps)) geometry.gravity = kGravity;
 
   ChargeStatistics statistics(geometry);
@@ -184,7 +198,10 @@ ChargeMotion measure_film(const std::string& path, const FilmOptions& options, c
       balls.push_back(p);
     }
     std::sort(balls.begin(), balls.end(), [](const TrackPoint& a, const TrackPoint& b) { return a.id < b.id; });
-    const double angle = drum.found ? degrees(sense * pass.angle[f]) : kNotGiven;
+    const double at_start = std::isnan(lifters.angle) ? 0.0
+                            : clockwise               ? kPi - lifters.angle
+                                                      : lifters.angle;  // a lifter stands at the mill angle
+    const double angle = drum.found ? degrees(at_start + sense * pass.angle[f]) : kNotGiven;
     statistics.add(static_cast<int>(f), static_cast<double>(f) / rate, angle, balls);
   }
   statistics.finish(motion);

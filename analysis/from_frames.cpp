@@ -9,9 +9,6 @@
 namespace tumble::analysis {
 namespace {
 
-// Without lifters a passage is taken as that of 18, a usual number: per-frame values need some window.
-constexpr int kUsualLifters = 18;
-
 MillGeometry geometry_of(const RunSetup& setup, const MillShape& shape) {
   MillGeometry g;
   g.radius = shape.radius;
