@@ -53,6 +53,9 @@
     const size = () => ({ width: Math.max(place.clientWidth, 200), height: place.classList.contains("tall") ? 300 : 230 });
     const u = new uPlot(Object.assign({ cursor: { y: false, points: { size: 6 } } }, size(), options), columns, place);
     new ResizeObserver(() => u.setSize(size())).observe(place);
+    // On paper a plot keeps the size of its letters and takes the page's width.
+    addEventListener("beforeprint", () => u.setSize({ width: place.closest(".pair") ? 330 : 680, height: size().height }));
+    addEventListener("afterprint", () => u.setSize(size()));
     plots.push(u);
     return u;
   };
