@@ -9,12 +9,13 @@ namespace tumble::sim {
 // The balls in the lab frame, a structure of arrays. Between two steps positions belong to the step, velocities to half
 // a step later (leapfrog, Mishra & Rajamani 1992, eqs 4 to 6).
 struct Charge {
-  std::vector<double> x, y;            // centres [m]
-  std::vector<double> angle;           // of the ball's mark, unwrapped [rad]
-  std::vector<double> vx, vy, spin;    // half a step after the positions [m/s, rad/s]
-  std::vector<double> ax, ay, alpha;   // half of what the last step added to the velocities [m/s, rad/s]: v - a is the
-                                       // velocity at the positions' own time, v + a that foreseen for the next
-  std::vector<double> radius, mass;    // [m], [kg]
+  std::vector<double> x, y;           // centres [m]
+  std::vector<double> angle;          // of the ball's mark, unwrapped [rad]
+  std::vector<double> vx, vy, spin;   // half a step after the positions [m/s, rad/s]
+  std::vector<double> ax, ay, alpha;  // half of what the last step added to the velocities [m/s, rad/s]: v - a is the
+                                      // velocity at the positions' own time, v + a that foreseen for the next
+  std::vector<double> radius, mass;   // [m], [kg]
+  std::vector<double> half_step_per_mass, half_step_per_inertia;  // dt / 2m [s/kg], dt / 2I
   std::vector<double> fx, fy, moment;  // sum of the contact forces [N] and of their moments about the centre [N m]
 
   std::size_t size() const { return x.size(); }

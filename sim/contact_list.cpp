@@ -37,12 +37,13 @@ void renew_ball_contacts(const MillModel& model, const Charge& charge, double sk
                          ContactList& list) {
   ContactList& next = search.next;
   clear(next);
+  const Damping damping(model.ball, model.time_step);
   search.grid.fill(charge, 2 * *std::max_element(charge.radius.begin(), charge.radius.end()) + skin);
   for (int i = 0; i < static_cast<int>(charge.size()); ++i) {
     search.grid.partners_of(charge, i, skin, search.found);
     for (const int j : search.found) {
       const double effective_mass = charge.mass[i] * charge.mass[j] / (charge.mass[i] + charge.mass[j]);
-      append(next, {i, j, charge.radius[i] + charge.radius[j], damping(model.ball, effective_mass, model.time_step)});
+      append(next, {i, j, charge.radius[i] + charge.radius[j], damping.of(effective_mass)});
     }
   }
   carry_over(list, next);
@@ -53,11 +54,11 @@ void renew_wall_contacts(const MillModel& model, const Charge& charge, double mi
                          ContactSearch& search, ContactList& list) {
   ContactList& next = search.next;
   clear(next);
+  const Damping damping(model.wall, model.time_step);
   for (int i = 0; i < static_cast<int>(charge.size()); ++i) {
     search.found.clear();
     features_near(model.shell, mill_angle, charge.x[i], charge.y[i], charge.radius[i] + skin, search.found);
-    for (const int feature : search.found)
-      append(next, {i, feature, charge.radius[i], damping(model.wall, charge.mass[i], model.time_step)});
+    for (const int feature : search.found) append(next, {i, feature, charge.radius[i], damping.of(charge.mass[i])});
   }
   carry_over(list, next);
   std::swap(list, next);

@@ -44,7 +44,7 @@ void pair(ReferenceMill& mill, std::size_t i, std::size_t j) {
   const double effective_mass = c.mass[i] * c.mass[j] / (c.mass[i] + c.mass[j]);
 
   const Touch now{overlap, -(foreseen_x * nx + foreseen_y * ny), -(vx * nx + vy * ny) * dt, sliding * dt,
-                  damping(mill.model.ball, effective_mass, dt)};
+                  Damping(mill.model.ball, dt).of(effective_mass)};
   const Reaction r = feel(mill.model.ball, now, d2 < reach * reach, dt, mill.with_ball[i * c.size() + j],
                           mill.ledger.dissipated[0], mill.ledger.dissipated[1]);
   if (!(d2 < reach * reach)) return;
@@ -75,7 +75,8 @@ void wall(ReferenceMill& mill, std::size_t i, int feature, double angle, double&
   const double sliding = vy * nx - vx * ny - distance * c.spin[i];
 
   const Touch now{c.radius[i] - distance, -((vx - c.ax[i]) * nx + (vy - c.ay[i]) * ny),
-                  -(vx * nx + vy * ny) * m.time_step, sliding * m.time_step, damping(m.wall, c.mass[i], m.time_step)};
+                  -(vx * nx + vy * ny) * m.time_step, sliding * m.time_step,
+                  Damping(m.wall, m.time_step).of(c.mass[i])};
   const bool touches = distance < c.radius[i];
   const Reaction r = feel(
       m.wall, now, touches, m.time_step,

@@ -200,8 +200,7 @@ void kick(RunningMill& mill) {
   const double half_fall = 0.5 * mill.model.gravity * dt;
   double fastest2 = 0, mass_moment = 0;
   for (std::size_t i = 0; i < c.size(); ++i) {
-    const double per_force = 0.5 * dt / c.mass[i];
-    const double per_moment = 0.5 * dt / inertia(c.mass[i], c.radius[i]);
+    const double per_force = c.half_step_per_mass[i], per_moment = c.half_step_per_inertia[i];
     c.ax[i] = c.fx[i] * per_force;
     c.ay[i] = c.fy[i] * per_force - half_fall;
     c.alpha[i] = c.moment[i] * per_moment;
@@ -229,9 +228,13 @@ RunningMill start_mill(const MillModel& model, Charge charge) {
   mill.model = model;
   mill.charge = std::move(charge);
   Charge& c = mill.charge;
+  c.half_step_per_mass.clear();
+  c.half_step_per_inertia.clear();
   // Half a step of gravity brings the velocities to their place in the leapfrog.
   const double half_fall = 0.5 * model.gravity * model.time_step;
   for (std::size_t i = 0; i < c.size(); ++i) {
+    c.half_step_per_mass.push_back(0.5 * model.time_step / c.mass[i]);
+    c.half_step_per_inertia.push_back(0.5 * model.time_step / inertia(c.mass[i], c.radius[i]));
     c.ax[i] = 0;
     c.ay[i] = -half_fall;
     c.alpha[i] = 0;

@@ -38,12 +38,19 @@ inline double damping_ratio(double restitution) {
 // q = (w dt)^2 (modified equation, second order); the restitution hangs on their ratio C / sqrt(k) alone. The first and
 // the last step, where the foreseen velocity knows nothing of the dashpot's jump, add 0.76 q z (1 - z^2)^(3/2):
 // measured, as the mean over all phases of the impact within a step, for e from 0.1 to 0.8.
-inline double damping(const LinearSpringDashpot& law, double effective_mass, double time_step) {
-  const double z = damping_ratio(law.restitution);
-  const double q = law.normal_stiffness / effective_mass * time_step * time_step;
-  return 2 * z * std::sqrt(effective_mass * law.normal_stiffness) /
-         (1 + q * ((11 - 20 * z * z) / 24 + 0.76 * z * std::pow(1 - z * z, 1.5)));
-}
+struct Damping {
+  double twice_ratio = 0, excess = 0, stiffness = 0, time_step = 0;
+
+  Damping(const LinearSpringDashpot& law, double dt)
+      : twice_ratio(2 * damping_ratio(law.restitution)), stiffness(law.normal_stiffness), time_step(dt) {
+    const double z = twice_ratio / 2;
+    excess = (11 - 20 * z * z) / 24 + 0.76 * z * std::pow(1 - z * z, 1.5);
+  }
+  double of(double effective_mass) const {
+    const double q = stiffness / effective_mass * time_step * time_step;
+    return twice_ratio * std::sqrt(effective_mass * stiffness) / (1 + q * excess);
+  }
+};
 
 // What a contact remembers from step to step; all zero while apart.
 struct ContactState {
