@@ -41,7 +41,7 @@ void draw_balls(Canvas& canvas, const Balls& balls, const Frame& frame, const Co
     disc.radius = balls.radius[i] * camera.pixels_per_metre;
     disc.colour = scale.colour_of(coloured_value(scale.by, balls, frame, i));
     disc.mark = camera.direction(frame.angle[i]);
-    disc.mark_strength = 0.72 * std::clamp((disc.radius - kMarkFadeTo) / (kMarkFadeFrom - kMarkFadeTo), 0.0, 1.0);
+    disc.mark_strength = 0.85 * std::clamp((disc.radius - kMarkFadeTo) / (kMarkFadeFrom - kMarkFadeTo), 0.0, 1.0);
     disc.gloss = scale.by == Colour::kSteel ? 1.0 : 0.35;
     canvas.discs.add(disc);
   }

@@ -40,9 +40,9 @@ void main() {
   vec2 m = disc_look.xy;
   float along = dot(q, m), across = abs(dot(q, vec2(-m.y, m.x)));
   float soft = 1.0 / radius;
-  float stripe = clamp((0.085 - across) / soft + 0.5, 0.0, 1.0) * clamp((0.80 - abs(along)) / soft + 0.5, 0.0, 1.0);
-  float dot_ = clamp((0.20 - length(q - 0.50 * m)) / soft + 0.5, 0.0, 1.0);
-  float mark = max(stripe, dot_) * disc_look.z;
+  float inside = max(min(0.085 - across, 0.80 - abs(along)), 0.20 - length(q - 0.50 * m));  // > 0 on the mark
+  float mark = clamp(inside / soft + 0.5, 0.0, 1.0) * disc_look.z;
+  float halo = clamp((inside + 0.07) / soft + 0.5, 0.0, 1.0) * disc_look.z;  // lets it read on pale balls too
 
   // Steel mirrors its surroundings: a bright sky above, a dark floor below, a sharper light.
   float gloss = disc_look.w;
@@ -51,8 +51,8 @@ void main() {
   float sky = 0.5 + 0.5 * n.y * z * 2.0;
   vec3 base = disc_colour.rgb;
   vec3 body = base * (0.30 + 0.78 * lit) * mix(1.0, 0.62 + 0.62 * sky, gloss);
-  float paint = dot(base, vec3(0.30, 0.59, 0.11)) > 0.62 ? 0.16 : 0.97;  // dark on pale balls
-  body = mix(body, vec3(paint) * (0.35 + 0.70 * lit), mark);
+  body = mix(body, base * 0.25, 0.75 * halo);
+  body = mix(body, vec3(0.97) * (0.40 + 0.65 * lit), mark);
   body += vec3(1.0, 0.98, 0.94) * spark * mix(0.22, 0.60, gloss);
 
   // A dark limb, inside the radius, parts balls that touch; balls of a few pixels would be nothing but limb.

@@ -68,9 +68,13 @@ TorquePlot make_torque_plot(Canvas& canvas, const Box& area, const TorqueTrace& 
   std::vector<double> known;
   std::copy_if(trace.torque().begin(), trace.torque().end(), std::back_inserter(known),
                [](double value) { return !std::isnan(value); });
-  // Single collisions would squash the curve: the scale holds all but one sample in two hundred, and zero.
-  plot.low = std::min(0.0, quantile(known, 0.005));
-  plot.high = std::max(0.0, quantile(known, 0.995));
+  // Single collisions would squash the curve: the scale holds zero, the curve and all but the wildest samples.
+  plot.low = std::min(0.0, quantile(known, 0.05));
+  plot.high = std::max(0.0, quantile(known, 0.95));
+  for (const double time : trace.time()) {
+    plot.low = std::min(plot.low, trace.running(time));
+    plot.high = std::max(plot.high, trace.running(time));
+  }
   if (!(plot.high > plot.low)) plot.high = plot.low + 1;
   plot.high += 0.08 * (plot.high - plot.low);
 
