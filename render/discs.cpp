@@ -40,9 +40,9 @@ void main() {
   vec2 m = disc_look.xy;
   float along = dot(q, m), across = abs(dot(q, vec2(-m.y, m.x)));
   float soft = 1.0 / radius;
-  float inside = max(min(0.085 - across, 0.80 - abs(along)), 0.20 - length(q - 0.50 * m));  // > 0 on the mark
+  float inside = max(min(0.075 - across, 0.80 - abs(along)), 0.18 - length(q - 0.50 * m));  // > 0 on the mark
   float mark = clamp(inside / soft + 0.5, 0.0, 1.0) * disc_look.z;
-  float halo = clamp((inside + 0.07) / soft + 0.5, 0.0, 1.0) * disc_look.z;  // lets it read on pale balls too
+  float halo = clamp((inside + 0.05) / soft + 0.5, 0.0, 1.0) * disc_look.z;  // lets it read on pale balls too
 
   // Steel mirrors its surroundings: a bright sky above, a dark floor below, a sharper light.
   float gloss = disc_look.w;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <thread>
+#include <tuple>
 
 #include "core/error.h"
 #include "core/random.h"
@@ -237,18 +238,18 @@ TEST(Renderer, TakesEveryMillThatAConfigCanHold) {
     const Scene scene = scene_of(config, 5);
     std::vector<Frame> past(3, scene.frame);
     for (std::size_t i = 0; i < past.size(); ++i) past[i].time -= 0.01 * static_cast<double>(past.size() - i);
-    for (const auto& [width, height] : {std::pair{64, 64}, {640, 360}, {720, 1280}, {1920, 1080}}) {
-      for (const Colour colour : {Colour::kSpeed, Colour::kSize, Colour::kSpin, Colour::kSteel}) {
-        Style style;
-        style.width = width;
-        style.height = height;
-        style.colour = colour;
-        style.overlay.tracks = style.overlay.velocity = true;
-        const Image image = picture(scene, style, {359.9, 89, {}, {}, past});
-        Scene gone = scene;
-        gone.frame.x[0] = 10;
-        EXPECT_GT(changed(image, picture(gone, style, {359.9, 89, {}, {}, past})).area, 5);
-      }
+    const std::tuple<int, int, Colour> looks[] = {
+        {64, 64, Colour::kSpeed}, {640, 360, Colour::kSize}, {720, 1280, Colour::kSpin}, {1920, 1080, Colour::kSteel}};
+    for (const auto& [width, height, colour] : looks) {
+      Style style;
+      style.width = width;
+      style.height = height;
+      style.colour = colour;
+      style.overlay.tracks = style.overlay.velocity = true;
+      const Moment moment{359.9, 89, {}, {}, past};
+      Scene gone = scene;
+      gone.frame.x[0] = 10;
+      EXPECT_GT(changed(picture(scene, style, moment), picture(gone, style, moment)).area, 5) << width << "x" << height;
     }
   }
 }
