@@ -1,0 +1,173 @@
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <opencv2/core/utility.hpp>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include "analysis/charge_mask.h"
+#include "analysis/charge_motion.h"
+#include "analysis/charge_statistics.h"
+#include "analysis/view.h"
+#include "core/error.h"
+#include "core/statistics.h"
+#include "core/units.h"
+
+namespace tumble::analysis {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::vector<cv::Mat> read_stills(const std::string& folder) {
+  std::error_code ec;
+  if (!fs::is_directory(folder, ec))
+    throw InputError(folder, "is no folder; a folder of stills (PNG or JPEG) was expected");
+  std::vector<fs::path> paths;
+  for (const auto& entry : fs::directory_iterator(folder, ec)) {
+    std::string kind = entry.path().extension().string();
+    std::transform(kind.begin(), kind.end(), kind.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    if (kind == ".png" || kind == ".jpg" || kind == ".jpeg") paths.push_back(entry.path());
+  }
+  if (paths.empty()) throw InputError(folder, "holds no stills; PNG or JPEG pictures were expected");
+  std::sort(paths.begin(), paths.end());
+  std::vector<cv::Mat> stills;
+  for (const fs::path& path : paths) {
+    cv::Mat still = cv::imread(path.string(), cv::IMREAD_COLOR);
+    if (still.empty()) throw InputError(path.string(), "cannot be read as a picture; PNG or JPEG was expected");
+    if (!stills.empty() && still.size() != stills[0].size())
+      throw InputError(
+          path.string(),
+          "has another size than the stills before it; pictures of one mill from one camera were expected");
+    stills.push_back(std::move(still));
+  }
+  return stills;
+}
+
+}  // namespace
+
+ChargeMotion measure_stills(const std::string& folder, const FilmOptions& options, const Progress& progress) {
+  cv::setNumThreads(1);
+  const std::vector<cv::Mat> stills = read_stills(folder);
+  const Config none;
+  const Config& known = options.mill != nullptr ? *options.mill : none;
+  ChargeMotion motion;
+  motion.source = MotionSource::kStills;
+  motion.frames = static_cast<int>(stills.size());
+  motion.rotation = options.rotation;
+  if (motion.rotation == Rotation::kUnknown)
+    motion.caveats.push_back(
+        "stills do not show the direction of rotation: taken as counter-clockwise; give --rotation");
+  const bool clockwise = motion.rotation == Rotation::kClockwise;
+
+  FilmSurvey survey;
+  cv::Mat mean = cv::Mat::zeros(stills[0].size(), CV_32F), grey;
+  for (const cv::Mat& still : stills) {
+    cv::cvtColor(still, grey, cv::COLOR_BGR2GRAY);
+    cv::accumulate(grey, mean);
+  }
+  mean /= static_cast<double>(stills.size());
+  survey.rings = find_concentric_circles(mean, 0.12 * std::min(mean.rows, mean.cols));
+  survey.centre = enclosing_circle(survey.rings);
+  if (!(survey.centre.radius > 0))
+    throw InputError(
+        folder,
+        "shows no mill; a view along the mill's axis was expected, with most of its round shell in the picture");
+  report(progress, 0.1);
+
+  const BallLook look = learn_look(stills, survey.centre, known_radii(known));
+  std::vector<std::vector<Detection>> balls;
+  for (const cv::Mat& still : stills) {
+    balls.push_back(detect_balls(still, look, survey.centre));
+    std::erase_if(balls.back(), [&](const Detection& d) { return d.score < look.birth_score; });
+    report(progress, 0.1 + 0.5 * static_cast<double>(balls.size()) / static_cast<double>(stills.size()));
+  }
+  const MillView view = find_view(balls, look, survey, DrumPattern{}, known, motion.caveats);
+  motion.camera.centre_u_px = view.mill.u;
+  motion.camera.centre_v_px = view.mill.v;
+  motion.camera.radius_px = view.mill.radius;
+  motion.camera.metres_per_pixel = view.metres_per_pixel;
+  motion.camera.width_px = mean.cols;
+  motion.camera.height_px = mean.rows;
+  motion.lifter_count = known.mill.lifters.count;
+  motion.mill_radius = view.mill.radius * view.metres_per_pixel;
+  motion.tip_radius = view.tip_radius * view.metres_per_pixel;
+
+  const double unit = std::isnan(view.metres_per_pixel) ? 1.0 : view.metres_per_pixel;
+  double diameters = 0, count = 0;
+  for (auto& f : balls) {
+    std::erase_if(f, [&](const Detection& d) {
+      return std::hypot(d.u - view.mill.u, d.v - view.mill.v) + d.radius > 1.02 * view.mill.radius;
+    });
+    for (const Detection& d : f) {
+      diameters += 2 * view.radii[static_cast<std::size_t>(d.size_class)];
+      count += 1;
+    }
+  }
+  if (count == 0)
+    throw InputError(folder, "shows no balls; balls of at least 3 pixels' radius were expected in the mill");
+  const double diameter = diameters / count;  // [px]
+
+  const auto shares = charge_shares(stills, balls, view.mill);
+  const Ring ring = edge_ring(view.tip_radius, diameter);
+  const int passages = motion.lifter_count > 0 ? motion.lifter_count : kUsualLifters;
+  const int width = 2 * (static_cast<int>(std::lround(360.0 / passages)) / 2) + 1;  // one lifter spacing
+  MillGeometry geometry;
+  geometry.radius = view.mill.radius * unit;
+  geometry.tip_radius = view.tip_radius * unit;
+  geometry.mean_diameter = diameter * unit;
+  ChargeStatistics statistics(geometry);
+  RingProfile sum{};
+  std::array<std::vector<double>, 3> toes, shoulders;
+  std::vector<double> fillings;
+  std::vector<ChargeEdges> edges;
+  int id = 0;
+  for (std::size_t i = 0; i < stills.size(); ++i) {
+    const RingProfile profile = mask_occupancy(shares[i], view.mill, ring, clockwise);
+    for (std::size_t k = 0; k < sum.size(); ++k) sum[k] += profile[k] / static_cast<double>(stills.size());
+    edges.push_back(find_edges(smooth(profile, width)));
+    for (std::size_t l = 0; l < 3; ++l) {
+      toes[l].push_back(edges.back().toe[l]);
+      shoulders[l].push_back(edges.back().shoulder[l]);
+    }
+    const double covered = cv::countNonZero(shares[i] > 0.5);
+    fillings.push_back(covered / (kSettledAreaShare * kPi * view.mill.radius * view.mill.radius));
+    std::vector<TrackPoint> points;
+    for (const Detection& d : balls[i]) {
+      TrackPoint p;
+      p.frame = static_cast<int>(i);
+      p.id = id++;
+      p.time = kNotGiven;
+      p.x = (clockwise ? -1 : 1) * (d.u + view.shift_u - view.mill.u) * unit;
+      p.y = -(d.v + view.shift_v - view.mill.v) * unit;
+      p.radius = view.radii[static_cast<std::size_t>(d.size_class)] * unit;
+      p.u_px = d.u + view.shift_u;
+      p.v_px = d.v + view.shift_v;
+      points.push_back(p);
+    }
+    statistics.add(static_cast<int>(i), kNotGiven, kNotGiven, points);
+  }
+  statistics.finish(motion);
+  // Edges from the pixels that show charge: not every ball of a still is found, but all of them have its colours.
+  const ChargeEdges whole = find_edges(smooth(sum, width));
+  Estimate* toe[] = {&motion.toe_deg, &motion.toe_bulk_deg, &motion.toe_outer_deg};
+  Estimate* shoulder[] = {&motion.shoulder_deg, &motion.shoulder_bulk_deg, &motion.shoulder_outer_deg};
+  for (std::size_t l = 0; l < 3; ++l) {
+    *toe[l] = {whole.toe[l], mean_direction(toes[l]).se};
+    *shoulder[l] = {whole.shoulder[l], mean_direction(shoulders[l]).se};
+  }
+  motion.ring_occupancy = sum;
+  for (std::size_t i = 0; i < edges.size(); ++i) {
+    motion.profile[i].toe_deg = edges[i].toe[kHalf];
+    motion.profile[i].shoulder_deg = edges[i].shoulder[kHalf];
+  }
+  motion.filling = mean_of_series(fillings);
+  if (std::isnan(view.metres_per_pixel)) {
+    forget_lengths(motion);
+    motion.caveats.push_back("scale unknown: give mill.diameter or charge.balls");
+  }
+  report(progress, 1.0);
+  return motion;
+}
+
+}  // namespace tumble::analysis
