@@ -27,14 +27,22 @@ std::string escaped(const std::string& text) {
   return out;
 }
 
-// One frame of an array [frames][balls] or [frames][balls][2], as a slab.
-std::string slab(const std::string& file, const char* path, std::size_t frame, const RunSetup& setup, bool pairs) {
-  const std::size_t n = setup.balls.size();
-  const std::string tail = pairs ? " 2" : "", zeros = pairs ? " 0 0" : " 0", ones = pairs ? " 1 1" : " 1";
+// The whole of an array, told once; frames refer to it by its number and cut their slab out of it.
+std::string whole(const std::string& file, const std::string& path, const std::string& shape, int precision) {
+  return fmt::format(R"(<DataItem Dimensions="{}" NumberType="Float" Precision="{}" Format="HDF">{}:/{}</DataItem>)",
+                     shape, precision, file, path);
+}
+std::string reference(std::size_t number) {
+  return fmt::format(R"(<DataItem Reference="XML">/Xdmf/Domain/DataItem[{}]</DataItem>)", number);
+}
+std::string slab(std::size_t array, std::size_t frame, std::size_t balls, bool pairs) {
+  const std::string shape = std::to_string(balls) + (pairs ? " 2" : "");
   return fmt::format(
-      R"(<DataItem ItemType="HyperSlab" Dimensions="{0}{1}"><DataItem Dimensions="3 {2}" Format="XML">{3}{4} 1{5} 1 {0}{1}</DataItem>)"
-      R"(<DataItem Dimensions="{6} {0}{1}" NumberType="Float" Precision="4" Format="HDF">{7}:/{8}/value</DataItem></DataItem>)",
-      n, tail, pairs ? 3 : 2, frame, zeros, ones, setup.frame_count, file, path);
+      R"(<DataItem ItemType="HyperSlab" Dimensions="{0}"><DataItem Dimensions="3 {1}" Format="XML">{2}{3} {0}</DataItem>{4}</DataItem>)",
+      shape, pairs ? 3 : 2, frame, pairs ? " 0 0 1 1 1 1" : " 0 1 1 1", reference(array));
+}
+std::string attribute(const char* name, const char* type, const std::string& item) {
+  return fmt::format(R"(<Attribute Name="{}" AttributeType="{}" Center="Node">{}</Attribute>)", name, type, item);
 }
 
 }  // namespace
@@ -47,26 +55,20 @@ void write_xdmf(const std::filesystem::path& run_file, const RunSetup& setup) {
     const auto held = hdf5::lock();
     time = hdf5::read_array<double>(hdf5::open_file(run_file, hdf5::Access::kRead), run_layout::kTime);
   }
-  std::string text = R"(<?xml version="1.0"?>
-<Xdmf Version="2.0"><Domain><Grid Name="balls" GridType="Collection" CollectionType="Temporal">
-)";
-  for (std::size_t k = 0; k < time.size(); ++k) {
-    const auto scalar = [&](const char* name, const char* path) {
-      return fmt::format(R"(<Attribute Name="{}" AttributeType="Scalar" Center="Node">{}</Attribute>)", name,
-                         slab(file, path, k, setup, false));
-    };
+  const auto arrays = run_layout::all_ball_arrays();  // position, velocity, angle, angular velocity
+  std::string text = "<?xml version=\"1.0\"?>\n<Xdmf Version=\"2.0\"><Domain>\n";
+  for (const auto& array : arrays)
+    text += whole(file, std::string(array.path) + "/value",
+                  fmt::format("{} {}{}", setup.frame_count, n, array.second ? " 2" : ""), 4);
+  text += "\n<Grid Name=\"balls\" GridType=\"Collection\" CollectionType=\"Temporal\">\n";
+  for (std::size_t k = 0; k < time.size(); ++k)
     text += fmt::format(
-        R"(<Grid Name="frame"><Time Value="{0}"/><Topology TopologyType="Polyvertex" NumberOfElements="{1}"/>)"
-        R"(<Geometry GeometryType="XY">{2}</Geometry>)",
-        time[k], n, slab(file, "particles/balls/position", k, setup, true));
-    text += fmt::format(
-        R"(<Attribute Name="radius" AttributeType="Scalar" Center="Node"><DataItem Dimensions="{0}" NumberType="Float" Precision="8" Format="HDF">{1}:/particles/balls/radius</DataItem></Attribute>)",
-        n, file);
-    text += fmt::format(R"(<Attribute Name="velocity" AttributeType="Matrix" Center="Node">{}</Attribute>)",
-                        slab(file, "particles/balls/velocity", k, setup, true));
-    text += scalar("angle", "particles/balls/angle") + scalar("angular_velocity", "particles/balls/angular_velocity");
-    text += "</Grid>\n";
-  }
+                R"(<Grid Name="frame"><Time Value="{}"/><Topology TopologyType="Polyvertex" NumberOfElements="{}"/>)"
+                R"(<Geometry GeometryType="XY">{}</Geometry>)",
+                time[k], n, slab(1, k, n, true)) +
+            attribute("velocity", "Matrix", slab(2, k, n, true)) + attribute("angle", "Scalar", slab(3, k, n, false)) +
+            attribute("angular_velocity", "Scalar", slab(4, k, n, false)) +
+            attribute("radius", "Scalar", whole(file, "particles/balls/radius", std::to_string(n), 8)) + "</Grid>\n";
   text += "</Grid></Domain></Xdmf>\n";
   std::filesystem::path path = run_file;
   path.replace_extension(".xdmf");

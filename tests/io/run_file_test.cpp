@@ -149,6 +149,19 @@ TEST_F(RunFile, HasTheNamesAndUnitsOthersRelyOn) {
   EXPECT_EQ(hdf5::read_array<double>(file, "observables/impact_spectrum/ball_ball").size(), 2u);
 }
 
+// Opened by hand in ParaView 5.11 (docs/run-file.md); here: one grid per frame, each with its own slab of the run.
+TEST_F(RunFile, SideCarPointsIntoTheRun) {
+  write_run(folder_ / "a&b.h5", small_run());
+  const std::string text = bytes_of(folder_ / "a&b.xdmf");
+  EXPECT_THAT(text, HasSubstr("a&amp;b.h5:/particles/balls/position/value"));
+  std::size_t grids = 0;
+  for (auto at = text.find("<Grid Name=\"frame\">"); at != std::string::npos;
+       at = text.find("<Grid Name=\"frame\">", at + 1))
+    ++grids;
+  EXPECT_EQ(grids, 12u);
+  EXPECT_THAT(text, HasSubstr("Format=\"XML\">11 0 0 1 1 1 1 3 2<"));  // the last frame: start, stride, count
+}
+
 TEST_F(RunFile, SameRunSameBytes) {
   write_run(run_, small_run());
   const std::string once = bytes_of(run_);
