@@ -15,7 +15,7 @@ namespace {
 
 // Share of the area that discs take in the loose start. Random sizes jam at about 0.84 in the plane, and fall least
 // from close to that; far below it they push apart within a few dozen sweeps.
-constexpr double kLooseShare = 0.6;
+constexpr double kLooseShare = 0.7;
 
 // Height up to which a circle of radius R about the origin must be filled to hold this area.
 double level_of_area(double area, double radius) {
@@ -161,7 +161,7 @@ Charge settle(const MillModel& model, Charge charge, const Progress& progress) {
   double scale = 0;  // sum of m g r [J]
   for (std::size_t i = 0; i < mill.charge.size(); ++i)
     scale += mill.charge.mass[i] * model.gravity * mill.charge.radius[i];
-  // At rest: a ball's speed is that of a fall through a thousandth of its radius. Some mills rattle on for long without
+  // At rest: a ball's speed is that of a fall through a hundredth of its radius. Some mills rattle on for long without
   // harm to what follows, hence the end after four falls through the mill.
   const double longest = 4 * std::sqrt(4 * model.shell.radius / model.gravity);
   const auto check_every =
@@ -169,7 +169,7 @@ Charge settle(const MillModel& model, Charge charge, const Progress& progress) {
   while (double(mill.step) * model.time_step < longest) {
     for (std::int64_t k = 0; k < check_every; ++k) advance(mill);
     report(progress, 0);
-    if (energies_of(mill).kinetic < 1e-3 * scale) break;
+    if (energies_of(mill).kinetic < 1e-2 * scale) break;
   }
   for (auto* v : {&mill.charge.vx, &mill.charge.vy, &mill.charge.spin, &mill.charge.angle})
     std::fill(v->begin(), v->end(), 0.0);
