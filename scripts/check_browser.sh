@@ -6,7 +6,14 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 work=$(mktemp -d)
 port=$((20000 + RANDOM % 20000))
-trap 'kill "$driver" 2>/dev/null || true; wait 2>/dev/null || true; rm -rf "$work"' EXIT
+session=
+leave() {
+  [ -z "$session" ] || call DELETE "$session" >/dev/null || true  # ends the browser
+  kill "$driver" 2>/dev/null || true
+  wait 2>/dev/null || true
+  rm -rf "$work"
+}
+trap leave EXIT
 HOME=$work chromedriver --port=$port --log-level=SEVERE >"$work/driver.log" 2>&1 &
 driver=$!
 
@@ -57,4 +64,3 @@ if [ $# -ge 2 ]; then call GET "$session/screenshot" | jq -r . | base64 -d >"$2"
 echo "<video src='file://$folder/film.mp4'></video>" >"$work/film.html"
 visit "file://$work/film.html"
 expect film.mp4 "$(see)" '.duration > 0 and .spread > 10'
-call DELETE "$session" >/dev/null
