@@ -118,7 +118,7 @@ void draw_torque_curve(Canvas& canvas, const TorquePlot& plot, const TorqueTrace
     }
     if (!std::isnan(smallest)) {
       const double top = plot.y_of(largest), bottom = plot.y_of(smallest);
-      if (bottom - top > 1) m.rectangle(x - 0.5, top, x + 0.5, bottom, with_alpha(ink::kTrace, pale ? 0.10 : 0.26));
+      if (bottom - top > 1) m.rectangle(x - 0.5, top, x + 0.5, bottom, with_alpha(ink::kTrace, pale ? 0.07 : 0.18));
     }
     curve.emplace_back(x, plot.y_of(trace.running(time_of(c))));
   }
