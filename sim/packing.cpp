@@ -166,9 +166,12 @@ Charge settle(const MillModel& model, Charge charge, const Progress& progress) {
   const double longest = 4 * std::sqrt(4 * model.shell.radius / model.gravity);
   const auto check_every =
       static_cast<std::int64_t>(std::ceil(0.1 * std::sqrt(2 * model.shell.radius / model.gravity) / model.time_step));
+  const auto steps_per_report = 1 + 1'000'000 / static_cast<std::int64_t>(mill.charge.size());
   while (double(mill.step) * model.time_step < longest) {
-    for (std::int64_t k = 0; k < check_every; ++k) advance(mill);
-    report(progress, 0);
+    for (std::int64_t k = 0; k < check_every; ++k) {
+      advance(mill);
+      if (k % steps_per_report == 0) report(progress, 0);
+    }
     if (energies_of(mill).kinetic < 1e-2 * scale) break;
   }
   for (auto* v : {&mill.charge.vx, &mill.charge.vy, &mill.charge.spin, &mill.charge.angle})

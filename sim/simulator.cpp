@@ -18,6 +18,7 @@ constexpr double kAutoShortest = 10;              // revolutions of spin-up befo
 constexpr double kAutoShortestLocked = 30;        // with locked balls: pockets fill over tens of revolutions
 constexpr double kAutoLongest = 200;              // and after which it gives up
 constexpr double kAutoZ = 2;                      // drift that "auto" takes for none [standard errors]
+constexpr double kFewestToJudge = 1.5;            // averaged revolutions that a verdict on drift needs
 constexpr double kCaveatZ = 3;                    // drift of the averages that is reported
 
 using Clock = std::chrono::steady_clock;
@@ -48,8 +49,17 @@ void add(Sums& to, const Ledger& from) {
   to.steps += from.steps;
 }
 
-void advance_to(RunState& run, std::int64_t step) {
-  while (run.mill.step < step) advance(run.mill);
+// Called every so many steps, so that a user sees progress, and can stop, in large mills too.
+using Tick = std::function<void()>;
+constexpr std::int64_t kBallStepsPerTick = 1'000'000;
+
+void advance_to(RunState& run, std::int64_t step, const Tick& tick) {
+  const std::int64_t steps_per_tick = 1 + kBallStepsPerTick / static_cast<std::int64_t>(run.mill.charge.size());
+  while (run.mill.step < step) {
+    const std::int64_t until = std::min(step, run.mill.step + steps_per_tick);
+    while (run.mill.step < until) advance(run.mill);
+    tick();
+  }
   Ledger& ledger = run.mill.ledger;
   add(run.frame, ledger);
   add(run.sample, ledger);
@@ -67,14 +77,14 @@ void take_sample(RunState& run) {
 }
 
 // Runs to the step, taking the samples on the way.
-void run_to(RunState& run, std::int64_t step) {
+void run_to(RunState& run, std::int64_t step, const Tick& tick) {
   for (;;) {
     const std::int64_t next = sample_step(run.mill.model, run.history.size());
     if (next > step) break;
-    advance_to(run, next);
+    advance_to(run, next, tick);
     take_sample(run);
   }
-  advance_to(run, step);
+  advance_to(run, step, tick);
 }
 
 Frame frame_of(const RunState& run) {
@@ -138,14 +148,15 @@ class Checkpoints {
 
 void spin_up(const Config& config, RunState& run, const RunSink& sink, Checkpoints& checkpoints) {
   const MillModel& model = run.mill.model;
-  const double averaged = config.run.revolutions;
+  const Tick tick = [&] {
+    const double done = revolutions_after(model, run.mill.step);
+    const double expected = config.run.spin_up_auto ? std::max(3 * kAutoShortest, 1.5 * done) : config.run.spin_up;
+    report(sink.progress, done / (expected + config.run.revolutions));
+  };
   while (!spin_up_is_over(config, run)) {
     std::int64_t next = sample_step(model, run.history.size());
     if (!config.run.spin_up_auto) next = std::min(next, step_after(model, config.run.spin_up));
-    run_to(run, next);
-    const double done = revolutions_after(model, run.mill.step);
-    const double expected = config.run.spin_up_auto ? std::max(3 * kAutoShortest, 1.5 * done) : config.run.spin_up;
-    report(sink.progress, done / (expected + averaged));
+    run_to(run, next, tick);
     checkpoints.maybe(run);
   }
   run.averaging_from = run.mill.step;
@@ -171,7 +182,10 @@ RunResult result_of(const Config& config, const RunState& run) {
   result.steady = s.steady && !run.spin_up_gave_up;
   const auto say = [&](const std::string& sentence) { result.caveat += (result.caveat.empty() ? "" : " ") + sentence; };
   if (run.spin_up_gave_up) say(fmt::format("The mill was not steady after {:g} revolutions of spin-up.", kAutoLongest));
-  if (!s.steady)
+  const double revolutions = revolutions_after(model, run.mill.step - run.averaging_from);
+  if (revolutions < kFewestToJudge)
+    say(fmt::format("{:.3g} averaged revolutions are too few to tell whether the mill is steady.", revolutions));
+  else if (!s.steady)
     say(fmt::format(
         "The averages drift: between the first and the second half torque by {:+.1f} and centre of mass by "
         "{:+.1f} standard errors, {:+.1f} balls locked meanwhile; spin_up = \"auto\" waits until they are steady.",
@@ -204,12 +218,14 @@ RunResult simulate(const Config& config, const RunSink& sink, const Checkpoint* 
   Checkpoints checkpoints(sink);
   if (run.averaging_from < 0) spin_up(config, run, sink, checkpoints);
   const double spun_up = revolutions_after(model, run.averaging_from);
+  const Tick tick = [&] {
+    report(sink.progress, revolutions_after(model, run.mill.step) / (spun_up + config.run.revolutions));
+  };
   while (run.frames_written < frames) {
-    run_to(run, run.averaging_from + (run.frames_written + 1) * model.steps_per_frame);
+    run_to(run, run.averaging_from + (run.frames_written + 1) * model.steps_per_frame, tick);
     if (sink.frame) sink.frame(frame_of(run));
     run.frame = {};
     ++run.frames_written;
-    report(sink.progress, revolutions_after(model, run.mill.step) / (spun_up + config.run.revolutions));
     checkpoints.maybe(run);
   }
   return result_of(config, run);
