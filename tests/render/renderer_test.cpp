@@ -162,7 +162,7 @@ TEST(Renderer, DrawsTheSamePixelsInEveryThread) {
   EXPECT_TRUE(alone.rgba == second.rgba);
 }
 
-// What stands still is painted once: nothing of an earlier frame, trace or scale may stay behind.
+// What stands still is painted once: nothing of an earlier frame, scale or trace may stay behind.
 TEST(Renderer, RemembersNothingOfEarlierFrames) {
   const Scene scene = scene_of(paper_mill(), 30), other = scene_of(paper_mill(), 30, 2);
   Frame late = other.frame;
@@ -170,14 +170,18 @@ TEST(Renderer, RemembersNothingOfEarlierFrames) {
   const Trace t = trace();
   std::vector<double> half(t.torque);
   for (double& value : half) value /= 2;
-  const Moment moment{232, 38, t.time, t.torque, {}};
-  Renderer renderer(scene.setup, {});
-  const Image fresh = renderer.draw(scene.frame, moment);
-  renderer.set_scale(0, 9);
-  const Image drawn_late = renderer.draw(late, {100, 20, t.time, half, {}});
-  EXPECT_GT(largest_difference(fresh, drawn_late), 100);
-  renderer.set_scale(0, std::sqrt(2 * kGravity * 0.2725));  // what a renderer starts with
-  EXPECT_EQ(largest_difference(renderer.draw(scene.frame, moment), fresh), 0);
+  const Moment first{232, 38, t.time, t.torque, {}}, second{100, 20, t.time, half, {}};
+
+  Renderer used(scene.setup, {}), fresh(scene.setup, {}), scaled(scene.setup, {});
+  scaled.set_scale(0, 9);
+  used.draw(scene.frame, first);
+  EXPECT_EQ(largest_difference(used.draw(late, first), fresh.draw(late, first)), 0);  // another frame
+  used.set_scale(0, 9);
+  EXPECT_EQ(largest_difference(used.draw(late, first), scaled.draw(late, first)), 0);  // another scale
+  Renderer with_second(scene.setup, {});
+  with_second.set_scale(0, 9);
+  EXPECT_EQ(largest_difference(used.draw(scene.frame, second), with_second.draw(scene.frame, second)), 0);  // trace
+  EXPECT_GT(largest_difference(used.draw(scene.frame, first), with_second.draw(scene.frame, second)), 100);
 }
 
 TEST(Renderer, ColourBarRunsFromDarkToLight) {
