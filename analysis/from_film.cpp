@@ -76,8 +76,7 @@ cv::Range lifter_rows(const FilmSurvey& survey, const MillView& view) {
   return from < to ? cv::Range(from, to) : cv::Range(0, 0);
 }
 
-std::vector<std::vector<Sighting>> sightings_of(const Pass& pass, const MillView& view, const LifterLattice& lifters,
-                                                bool clockwise) {
+std::vector<std::vector<Sighting>> sightings_of(const Pass& pass, const MillView& view, bool clockwise) {
   std::vector<std::vector<Sighting>> frames(pass.balls.size());
   for (std::size_t f = 0; f < pass.balls.size(); ++f)
     for (const Detection& d : pass.balls[f]) {
@@ -88,7 +87,6 @@ std::vector<std::vector<Sighting>> sightings_of(const Pass& pass, const MillView
       s.size_class = d.size_class;
       s.score = d.score;
       if (std::hypot(s.x, s.y) + s.radius > view.mill.radius + 0.3 * s.radius) continue;
-      if (!pass.angle.empty() && within_lifter(d, view, lifters, pass.angle[f])) continue;
       frames[f].push_back(s);
     }
   return frames;
@@ -110,7 +108,7 @@ ChargeMotion measure_film(const std::string& path, const FilmOptions& options, c
 
   const BallLook look = learn_look(survey.samples, survey.centre, known_radii(known));
   const DrumPattern drum = learn_drum(survey.strips, known.mill.lifters.count, kNotGiven);
-  const Pass pass = detect_all(path, survey, look, drum, progress);
+  Pass pass = detect_all(path, survey, look, drum, progress);
   motion.frames = static_cast<int>(pass.balls.size());
 
   motion.rotation = options.rotation;
@@ -121,7 +119,18 @@ ChargeMotion measure_film(const std::string& path, const FilmOptions& options, c
   if (motion.rotation == Rotation::kUnknown)
     motion.caveats.push_back("direction of rotation unknown, taken as counter-clockwise; give --rotation");
 
-  const MillView view = find_view(pass.balls, look, survey, drum, known, motion.caveats);
+  // Lifters taken for balls would lie against the shell: they are found with a first view, which needs to be good to a
+  // few percent only, and taken out before the second.
+  std::vector<std::string> first_caveats;
+  MillView view = find_view(pass.balls, look, survey, drum, known, first_caveats);
+  LifterLattice lifters;
+  for (int round = 0; round < 2; ++round) {
+    const double guess = lifter_phase(drum, survey.strips, lifter_rows(survey, view));
+    lifters = find_lifters(pass.balls, pass.angle, view, drum.lifter_count, guess);
+    for (std::size_t f = 0; f < pass.angle.size(); ++f)
+      std::erase_if(pass.balls[f], [&](const Detection& d) { return within_lifter(d, view, lifters, pass.angle[f]); });
+    if (round == 0) view = find_view(pass.balls, look, survey, drum, known, motion.caveats);
+  }
   motion.camera.centre_u_px = view.mill.u;
   motion.camera.centre_v_px = view.mill.v;
   motion.camera.radius_px = view.mill.radius;
@@ -141,9 +150,7 @@ ChargeMotion measure_film(const std::string& path, const FilmOptions& options, c
   const double critical = critical_speed_rpm(mill);
   motion.speed_fraction = {motion.speed_rpm.value / critical, motion.speed_rpm.se / critical};
 
-  const double guess = lifter_phase(drum, survey.strips, lifter_rows(survey, view));
-  const LifterLattice lifters = find_lifters(pass.balls, pass.angle, view, drum.lifter_count, guess);
-  auto frames = sightings_of(pass, view, lifters, clockwise);
+  auto frames = sightings_of(pass, view, clockwise);
   MotionModel model;
   model.turn = drum.found ? sense * turn.value : 0.0;
   model.tip_radius = view.tip_radius;

@@ -11,7 +11,6 @@ namespace tumble::analysis {
 namespace {
 
 constexpr double kBin = 0.25;  // of histograms [px]
-constexpr int kSectors = 36;
 
 std::vector<double> smooth_histogram(const std::vector<double>& values, double top, double sigma) {
   std::vector<double> h(static_cast<std::size_t>(top / kBin) + 2, 0.0);
@@ -27,24 +26,48 @@ std::vector<double> smooth_histogram(const std::vector<double>& values, double t
 
 }  // namespace
 
-ShellTouch find_shell_touch(const std::vector<std::vector<Detection>>& frames, int size_class, const Circle& centre) {
+Contacts find_contacts(const std::vector<std::vector<Detection>>& frames, int size_class) {
+  std::vector<double> gaps;
+  double radius = 0;
+  for (const auto& f : frames)
+    for (std::size_t i = 0; i < f.size(); ++i) {
+      if (f[i].size_class != size_class) continue;
+      radius = f[i].radius;
+      for (std::size_t j = i + 1; j < f.size(); ++j) {
+        if (f[j].size_class != size_class) continue;
+        const double gap = std::hypot(f[i].u - f[j].u, f[i].v - f[j].v);
+        if (gap < 3.2 * f[i].radius) gaps.push_back(gap);
+      }
+    }
+  if (gaps.size() < 60) return {};
+  const auto h = smooth_histogram(gaps, 3.2 * radius, std::max(0.5, 0.05 * radius));
+  const auto peak = std::max_element(h.begin(), h.end());
+  return {(static_cast<double>(peak - h.begin()) + 0.5) * kBin, static_cast<int>(gaps.size())};
+}
+
+ShellTouch find_shell_touch(const std::vector<std::vector<Detection>>& frames, int size_class,
+                            const std::vector<double>& radii, const Circle& centre, double least, double most) {
   struct Place {
     double rho, cu, cv;  // distance and direction from the centre
+    bool touching;       // another ball
   };
   std::vector<Place> places;
   std::vector<double> distances;
-  double radius = 0;
+  const double radius = radii[static_cast<std::size_t>(size_class)];
   for (const auto& f : frames)
     for (const Detection& d : f) {
       if (d.size_class != size_class) continue;
       const double du = d.u - centre.u, dv = d.v - centre.v, rho = std::hypot(du, dv);
-      if (rho < 1) continue;
-      places.push_back({rho, du / rho, dv / rho});
+      if (rho < std::max(1.0, least) || rho > most) continue;
+      const bool touching = std::any_of(f.begin(), f.end(), [&](const Detection& o) {
+        const double gap = 1.08 * (radius + radii[static_cast<std::size_t>(o.size_class)]);
+        return &o != &d && std::hypot(o.u - d.u, o.v - d.v) < gap;
+      });
+      places.push_back({rho, du / rho, dv / rho, touching});
       distances.push_back(rho);
-      radius = d.radius;
     }
   ShellTouch touch;
-  if (places.size() < 30) return touch;
+  if (places.size() < 15) return touch;
   const double top = *std::max_element(distances.begin(), distances.end()) + 4;
   const double sigma = std::max(0.5, 0.06 * radius);
   const auto histogram = smooth_histogram(distances, top, sigma);
@@ -52,16 +75,13 @@ ShellTouch find_shell_touch(const std::vector<std::vector<Detection>>& frames, i
   for (std::size_t i = histogram.size() - 2; i > 0; --i) {  // from outside inwards
     if (histogram[i] < 0.25 * typical || histogram[i] < histogram[i - 1] || histogram[i] < histogram[i + 1]) continue;
     const double reach = (static_cast<double>(i) + 0.5) * kBin;
-    std::array<int, kSectors> sectors{};
-    int crowd = 0;
+    int crowd = 0, touching = 0;
     for (const Place& p : places) {
       if (std::abs(p.rho - reach) > 3 * sigma) continue;
-      ++sectors[static_cast<std::size_t>((std::atan2(p.cv, p.cu) + kPi) / (2 * kPi) * kSectors) % kSectors];
       ++crowd;
+      touching += p.touching;
     }
-    const double even = static_cast<double>(crowd) / kSectors;
-    const auto filled = std::count_if(sectors.begin(), sectors.end(), [&](int n) { return n > 0.3 * even; });
-    if (crowd < 15 || static_cast<double>(filled) > 0.9 * kSectors) continue;  // all the way round: fixed to the drum
+    if (crowd < 15 || touching < 0.25 * crowd) continue;
     touch.found = true;
     touch.reach = reach;
     touch.count = crowd;
@@ -81,9 +101,9 @@ ShellTouch find_shell_touch(const std::vector<std::vector<Detection>>& frames, i
       // A short arc cannot tell a shift from a smaller reach.
       const cv::Matx22d spread(a(1, 1) - a(0, 1) * a(0, 1) / a(0, 0), a(1, 2) - a(0, 1) * a(0, 2) / a(0, 0),
                                a(1, 2) - a(0, 1) * a(0, 2) / a(0, 0), a(2, 2) - a(0, 2) * a(0, 2) / a(0, 0));
-      const double least = 0.5 * (spread(0, 0) + spread(1, 1)) -
+      const double weaker = 0.5 * (spread(0, 0) + spread(1, 1)) -
                            std::sqrt(0.25 * std::pow(spread(0, 0) - spread(1, 1), 2) + spread(0, 1) * spread(0, 1));
-      if (least > 0.04 * a(0, 0) && cv::solve(a, b, x, cv::DECOMP_CHOLESKY)) {
+      if (weaker > 0.04 * a(0, 0) && cv::solve(a, b, x, cv::DECOMP_CHOLESKY)) {
         touch.reach = x[0];
         touch.shift_u = x[1];
         touch.shift_v = x[2];
@@ -95,25 +115,6 @@ ShellTouch find_shell_touch(const std::vector<std::vector<Detection>>& frames, i
     return touch;
   }
   return touch;
-}
-
-double contact_distance(const std::vector<std::vector<Detection>>& frames, int size_class) {
-  std::vector<double> gaps;
-  double radius = 0;
-  for (const auto& f : frames)
-    for (std::size_t i = 0; i < f.size(); ++i) {
-      if (f[i].size_class != size_class) continue;
-      radius = f[i].radius;
-      for (std::size_t j = i + 1; j < f.size(); ++j) {
-        if (f[j].size_class != size_class) continue;
-        const double gap = std::hypot(f[i].u - f[j].u, f[i].v - f[j].v);
-        if (gap < 3.2 * f[i].radius) gaps.push_back(gap);
-      }
-    }
-  if (gaps.size() < 60) return 0;
-  const auto h = smooth_histogram(gaps, 3.2 * radius, std::max(0.5, 0.05 * radius));
-  const auto peak = std::max_element(h.begin(), h.end());
-  return (static_cast<double>(peak - h.begin()) + 0.5) * kBin;
 }
 
 }  // namespace tumble::analysis

@@ -7,6 +7,13 @@ namespace tumble::analysis {
 
 // Sizes read off the balls themselves: they touch the shell and one another.
 
+struct Contacts {
+  double distance = 0;  // commonest between centres of neighbours of one class: twice the radius [px]; 0 if unknown
+  int pairs = 0;        // sightings that say so
+};
+
+Contacts find_contacts(const std::vector<std::vector<Detection>>& frames, int size_class);
+
 struct ShellTouch {
   bool found = false;
   double reach = 0;                 // distance from the axis of balls that touch the shell [px]
@@ -14,10 +21,9 @@ struct ShellTouch {
   int count = 0;                    // sightings that say so
 };
 
-// Where balls of one size class stop: the outermost crowd of centres that does not go all the way round (bolts do).
-ShellTouch find_shell_touch(const std::vector<std::vector<Detection>>& frames, int size_class, const Circle& centre);
-
-// Commonest distance between neighbours of one size class [px]: twice the radius, as far as they touch. 0 if too few.
-double contact_distance(const std::vector<std::vector<Detection>>& frames, int size_class);
+// Where the balls of one class stop: the outermost crowd of their centres between `least` and `most` from the centre.
+// `radii`: of all classes [px]. A crowd whose members touch nothing is no charge: bolts, rivets, marks.
+ShellTouch find_shell_touch(const std::vector<std::vector<Detection>>& frames, int size_class,
+                            const std::vector<double>& radii, const Circle& centre, double least, double most);
 
 }  // namespace tumble::analysis

@@ -29,35 +29,45 @@ MillView find_view(const std::vector<std::vector<Detection>>& balls, const BallL
   const auto sizes = known_radii(known);
   const bool sizes_known = sizes.size() == look.radii.size();
 
-  double weight = 0, radius = 0, shift_u = 0, shift_v = 0, scale = 0, scale_weight = 0;
-  std::vector<double> contact(look.radii.size(), 0.0);
-  for (std::size_t c = 0; c < look.radii.size(); ++c) {
-    const int k = static_cast<int>(c);
-    contact[c] = 0.5 * contact_distance(balls, k);
-    if (sizes_known && contact[c] > 0) {
-      scale += sizes[c] / contact[c];
-      scale_weight += 1;
-    }
-    const ShellTouch touch = find_shell_touch(balls, k, survey.centre);
-    if (!touch.found) continue;
-    double r = touch.reach + contact[c];
-    if (sizes_known && mill_radius > 0) r = touch.reach / (1 - sizes[c] / mill_radius);
-    if (contact[c] == 0 && !(sizes_known && mill_radius > 0)) r = touch.reach + look.radii[c];
-    const double w = touch.count;
-    radius += w * r;
-    shift_u += w * touch.shift_u;
-    shift_v += w * touch.shift_v;
-    weight += w;
+  // True radii: half the distance at which balls touch; detected rims lie inside or outside of them by a common factor.
+  const std::size_t classes = look.radii.size();
+  std::vector<Contacts> contacts(classes);
+  double swell = 1, scale = 0;
+  int most_pairs = 0;
+  for (std::size_t c = 0; c < classes; ++c) {
+    contacts[c] = find_contacts(balls, static_cast<int>(c));
+    if (contacts[c].pairs <= most_pairs) continue;
+    most_pairs = contacts[c].pairs;
+    swell = 0.5 * contacts[c].distance / look.radii[c];
+    if (sizes_known) scale = sizes[c] / (0.5 * contacts[c].distance);
   }
-  if (weight > 0) {
-    view.mill.radius = radius / weight;
-    view.shift_u = shift_u / weight;
-    view.shift_v = shift_v / weight;
+  std::vector<double> radii(classes);
+  for (std::size_t c = 0; c < classes; ++c)
+    radii[c] = scale > 0               ? sizes[c] / scale
+               : contacts[c].pairs > 0 ? 0.5 * contacts[c].distance
+                                       : swell * look.radii[c];
+
+  // The shell, from the class of which most balls were seen against it. Where mill and balls are known, their ratio
+  // says where to look.
+  const double guess = scale > 0 && mill_radius > 0 ? mill_radius / scale : 0;
+  ShellTouch best;
+  for (std::size_t c = 0; c < classes; ++c) {
+    const double least = guess > 0 ? 0.98 * guess - radii[c] : 0, most = guess > 0 ? 1.02 * guess - radii[c] : 1e9;
+    const ShellTouch touch = find_shell_touch(balls, static_cast<int>(c), radii, survey.centre, least, most);
+    if (!touch.found || touch.count <= best.count) continue;
+    best = touch;
+    const bool ratio_known = sizes_known && mill_radius > 0;
+    view.mill.radius = ratio_known ? touch.reach / (1 - sizes[c] / mill_radius) : touch.reach + radii[c];
+  }
+  if (best.found) {
+    view.shift_u = best.shift_u;
+    view.shift_v = best.shift_v;
   } else {
-    caveats.push_back("no balls were seen to lie against the shell: its circle is a guess from the picture's edges");
+    if (guess > 0) view.mill.radius = guess;
+    caveats.push_back("few balls were seen to lie against the shell: its circle is a guess from the picture's edges");
   }
-  double nearest = kSnap * view.mill.radius;
   const double touched = view.mill.radius;
+  double nearest = (best.found ? kSnap : 0.03) * touched;
   for (const RingEdge& ring : survey.rings) {
     const double miss = std::abs(ring.circle.radius - touched);
     if (ring.coverage < 0.5 || miss >= nearest) continue;
@@ -67,14 +77,11 @@ MillView find_view(const std::vector<std::vector<Detection>>& balls, const BallL
 
   if (mill_radius > 0)
     view.metres_per_pixel = mill_radius / view.mill.radius;
-  else if (scale_weight > 0)
-    view.metres_per_pixel = scale / scale_weight;
-
-  for (std::size_t c = 0; c < look.radii.size(); ++c) {
-    double r = contact[c] > 0 ? contact[c] : look.radii[c];
-    if (sizes_known && !std::isnan(view.metres_per_pixel)) r = sizes[c] / view.metres_per_pixel;
-    view.radii.push_back(r);
-  }
+  else if (scale > 0)
+    view.metres_per_pixel = scale;
+  view.radii = radii;
+  if (sizes_known && !std::isnan(view.metres_per_pixel))
+    for (std::size_t c = 0; c < classes; ++c) view.radii[c] = sizes[c] / view.metres_per_pixel;
 
   view.tip_radius = view.mill.radius;
   if (known.mill.lifters.profile == LifterProfile::kNone && known.mill.lifters.count > 0) return view;
