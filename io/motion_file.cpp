@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr int kFormat = 1;  // grows when an older reader could not read the file
-constexpr const char* kFormatAttribute = "tumble_motion_file";
+constexpr const char* kFormatPath = "motion_file_format";
 constexpr std::size_t kMostRows = std::size_t{1} << 30;
 constexpr int kMostCells = 1 << 13;  // of a field's edge
 
@@ -187,7 +187,7 @@ void write_motion(const fs::path& path, const ChargeMotion& motion) {
   try {
     const auto held = hdf5::lock();
     auto file = hdf5::create_file(staged.path());
-    hdf5::set_attribute(file, kFormatAttribute, std::vector{kFormat});
+    hdf5::write_scalar<int>(file, kFormatPath, kFormat);
     hdf5::set_attribute(file, "version", kVersion);
     Writer writer{file};
     walk(writer, motion);
@@ -201,10 +201,10 @@ void write_motion(const fs::path& path, const ChargeMotion& motion) {
 ChargeMotion read_motion(const fs::path& path) {
   const auto held = hdf5::lock();
   const auto file = hdf5::open_input(path, "a motion file");
-  if (H5Aexists(file, kFormatAttribute) <= 0)
+  if (!hdf5::exists(file, kFormatPath))
     throw InputError(path.string(), "is an HDF5 file but no motion file; give what analyse has written");
   try {
-    const int format = hdf5::read_attribute(file, kFormatAttribute).front();
+    const int format = hdf5::read_scalar<int>(file, kFormatPath);
     if (format != kFormat)
       throw hdf5::Failure("its format is " + std::to_string(format) + ", this program reads " +
                           std::to_string(kFormat));
@@ -223,7 +223,7 @@ bool is_motion_file(const fs::path& path) {
   if (!hdf5::is_hdf5(path)) return false;
   const auto held = hdf5::lock();
   try {
-    return H5Aexists(hdf5::open_file(path, hdf5::Access::kRead), kFormatAttribute) > 0;
+    return hdf5::exists(hdf5::open_file(path, hdf5::Access::kRead), kFormatPath);
   } catch (const hdf5::Failure&) {
     return false;
   }

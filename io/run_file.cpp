@@ -43,7 +43,7 @@ struct RunReader::Impl {
   std::vector<hdf5::Dataset> balls;
 
   void read() {
-    const auto format = hdf5::read_attribute(file, kFormatAttribute).front();
+    const auto format = hdf5::read_scalar<int>(file, kFormatPath);
     if (format != kFormat)
       throw hdf5::Failure("its format is " + std::to_string(format) + ", this program reads " +
                           std::to_string(kFormat));

@@ -16,7 +16,9 @@ inline constexpr int kFormat = 1;                     // grows when an older rea
 inline constexpr std::size_t kSpectrumBins = 256;     // space for an impact spectrum
 inline constexpr std::size_t kCaveatCapacity = 4096;  // [bytes]
 
-inline constexpr const char* kFormatAttribute = "tumble_run_file";  // at the root
+// A dataset: the library reads past its memory where a foreign file's attributes are damaged, so nothing is read from
+// them.
+inline constexpr const char* kFormatPath = "parameters/run_file_format";
 inline constexpr const char* kFramesWritten = "parameters/frames_written";
 inline constexpr const char* kComplete = "parameters/complete";
 inline constexpr const char* kCheckpointWords = "parameters/checkpoint/words";

@@ -166,7 +166,7 @@ constexpr const char* kBallWall = "observables/impact_spectrum/ball_wall";
 
 void lay_out(hid_t file, const RunSetup& setup, std::size_t checkpoint_words) {
   const hsize_t frames = static_cast<hsize_t>(setup.frame_count), balls = setup.balls.size();
-  hdf5::set_attribute(file, kFormatAttribute, std::vector{kFormat});
+  hdf5::write_scalar<int>(file, kFormatPath, kFormat);
   lay_out_h5md(file);
 
   const auto box = hdf5::make_group(file, "particles/balls/box");

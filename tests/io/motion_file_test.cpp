@@ -128,7 +128,7 @@ TEST_F(MotionFile, RefusesWhatIsNoMotion) {
   {
     const auto held = hdf5::lock();
     const auto file = hdf5::create_file(file_);
-    hdf5::set_attribute(file, "tumble_motion_file", std::vector{1});
+    hdf5::write_scalar<int>(file, "motion_file_format", 1);
   }
   EXPECT_THAT(refusal(), HasSubstr("is not a whole motion file: "));
 }
