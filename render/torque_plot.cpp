@@ -104,23 +104,25 @@ void draw_torque_curve(Canvas& canvas, const TorquePlot& plot, const TorqueTrace
     canvas.text.add(tick.label, std::min(x, box.right - half), box.bottom + canvas.px(7) + 0.8 * under.size, under);
   }
 
-  // One column a pixel.
-  const int columns = std::max(2, static_cast<int>(box.width()));
-  const auto time_of = [&](double column) { return plot.start + (plot.end - plot.start) * column / (columns - 1); };
-  std::vector<Vec2> curve;
+  // The band: bins of a few samples, and of a pixel at least.
+  const auto time_of = [&](int part, int parts) { return plot.start + (plot.end - plot.start) * part / parts; };
+  const int pixels = std::max(2, static_cast<int>(box.width()));
+  const int bins = std::clamp(static_cast<int>(trace.time().size() / 4), 1, pixels);
   std::size_t k = 0;
-  for (int c = 0; c < columns; ++c) {
-    const double x = plot.x_of(time_of(c));
+  for (int i = 0; i < bins; ++i) {
     double smallest = kNotGiven, largest = kNotGiven;
-    for (; k < trace.time().size() && trace.time()[k] <= time_of(c + 0.5); ++k) {
+    for (; k < trace.time().size() && trace.time()[k] <= time_of(i + 1, bins); ++k) {
       smallest = std::fmin(smallest, trace.torque()[k]);
       largest = std::fmax(largest, trace.torque()[k]);
     }
-    if (!std::isnan(smallest)) {
-      const double top = plot.y_of(largest), bottom = plot.y_of(smallest);
-      if (bottom - top > 1) m.rectangle(x - 0.5, top, x + 0.5, bottom, with_alpha(ink::kTrace, pale ? 0.07 : 0.18));
-    }
-    curve.emplace_back(x, plot.y_of(trace.running(time_of(c))));
+    if (std::isnan(smallest)) continue;
+    m.rectangle(plot.x_of(time_of(i, bins)), plot.y_of(largest), plot.x_of(time_of(i + 1, bins)), plot.y_of(smallest),
+                with_alpha(ink::kTrace, pale ? 0.07 : 0.18));
+  }
+  std::vector<Vec2> curve;
+  for (int i = 0; i <= pixels; ++i) {
+    const double time = time_of(i, pixels);
+    curve.emplace_back(plot.x_of(time), plot.y_of(trace.running(time)));
   }
   m.polyline(curve, canvas.stroke(pale ? 1.3 : 1.8), with_alpha(ink::kTrace, pale ? 0.4 : 1.0));
 
