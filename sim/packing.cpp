@@ -94,6 +94,22 @@ double push_apart(const Shell& shell, Charge& c, double clearance, CellGrid& gri
   return worst;
 }
 
+// Sweeps until no overlap is larger than the clearance aimed at in vain, so that none is left without it: the last
+// overlaps shrink ever more slowly. Gives up when nothing improves any more. Returns the largest overlap.
+double push_apart_until(const Shell& shell, Charge& c, double clearance) {
+  CellGrid grid;
+  std::vector<int> partners;
+  double worst = INFINITY, best = INFINITY;
+  for (int sweep = 0, last_better = 0; worst > clearance && sweep - last_better < 300; ++sweep) {
+    worst = push_apart(shell, c, clearance, grid, partners);
+    if (worst < 0.99 * best) {
+      best = worst;
+      last_better = sweep;
+    }
+  }
+  return worst;
+}
+
 }  // namespace
 
 Balls draw_balls(const Config& config) {
@@ -138,13 +154,13 @@ Charge place_loosely(const Config& config, const MillModel& model, const Balls& 
     c.y[i] = sites[i].second + low * random.uniform(-0.2, 0.2);
   }
 
-  // Aim at a small clearance, so that the sweeps end although the last overlaps shrink ever more slowly.
+  // First within the circle of the lifter tips: a large ball that is pressed into a pocket too narrow for it never
+  // comes out again. Only what does not fit there gets the pockets as well.
+  Shell inside_tips;
+  inside_tips.radius = inside_tips.tip_radius = model.shell.tip_radius;
   const double clearance = 0.01 * *smallest;
-  CellGrid grid;
-  std::vector<int> partners;
-  double worst = INFINITY;
-  for (int sweep = 0; sweep < 5000 && worst > clearance; ++sweep)
-    worst = push_apart(model.shell, c, clearance, grid, partners);
+  double worst = push_apart_until(inside_tips, c, clearance);
+  if (!(worst <= clearance)) worst = push_apart_until(model.shell, c, clearance);
   if (!(worst <= clearance))
     throw InputError(
         place_of(config, key),
