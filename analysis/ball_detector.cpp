@@ -10,19 +10,22 @@
 namespace tumble::analysis {
 namespace {
 
-constexpr int kDirections = 40;        // round a rim
-constexpr double kLeastWeight = 0.25;  // of an edge that votes
+constexpr int kDirections = 32;        // round a rim
+constexpr float kLeastWeight = 0.4f;   // of an edge that votes
+constexpr double kLeastHeight = 0.12;  // of a place that is looked at more closely, in votes of a full clear rim
+constexpr double kHopeless = 0.08;     // score at which a place is given up
 constexpr double kNearest = 0.80;      // centres of two balls come no nearer than this share of their radii's sum
 
 struct Direction {
-  double u, v;
+  float u, v;
 };
 
 const std::array<Direction, kDirections>& directions() {
   static const auto table = [] {
     std::array<Direction, kDirections> t{};
     for (int k = 0; k < kDirections; ++k)
-      t[static_cast<std::size_t>(k)] = {std::cos(2 * kPi * k / kDirections), std::sin(2 * kPi * k / kDirections)};
+      t[static_cast<std::size_t>(k)] = {static_cast<float>(std::cos(2 * kPi * k / kDirections)),
+                                        static_cast<float>(std::sin(2 * kPi * k / kDirections))};
     return t;
   }();
   return table;
@@ -37,38 +40,42 @@ struct Vote {    // an edge pixel
 std::vector<Vote> collect_votes(const EdgeMap& edges, int polarity, const Circle& bound) {
   std::vector<Vote> votes;
   const float level = static_cast<float>(edges.level);
+  const float least = level * kLeastWeight / (1 - kLeastWeight);
   const double cu = bound.u - edges.origin.x, cv = bound.v - edges.origin.y;
-  for (int v = 0; v < edges.gu.rows; ++v) {
+  for (int v = 0; v < edges.gradient.rows; ++v) {
     const double reach2 = bound.radius * bound.radius - (v - cv) * (v - cv);
     if (reach2 <= 0) continue;
     const double reach = std::sqrt(reach2);
     const int from = std::max(0, static_cast<int>(std::ceil(cu - reach)));
-    const int to = std::min(edges.gu.cols - 1, static_cast<int>(std::floor(cu + reach)));
-    const float* gu = edges.gu.ptr<float>(v);
-    const float* gv = edges.gv.ptr<float>(v);
-    const float* magnitude = edges.magnitude.ptr<float>(v);
+    const int to = std::min(edges.gradient.cols - 1, static_cast<int>(std::floor(cu + reach)));
+    const float* g = edges.gradient.ptr<float>(v);
     for (int u = from; u <= to; ++u) {
-      const float m = magnitude[u], w = m / (m + level);
-      if (w < kLeastWeight) continue;
-      const float s = static_cast<float>(polarity) / m;
-      votes.push_back({static_cast<float>(u), static_cast<float>(v), s * gu[u], s * gv[u], w});
+      const float square = g[2 * u] * g[2 * u] + g[2 * u + 1] * g[2 * u + 1];
+      if (square < least * least) continue;
+      const float m = std::sqrt(square), s = static_cast<float>(polarity) / m;
+      votes.push_back({static_cast<float>(u), static_cast<float>(v), s * g[2 * u], s * g[2 * u + 1], m / (m + level)});
     }
   }
   return votes;
 }
 
+// Votes are counted on a grid as coarse as the balls allow: a third of a pixel is found on the rim anyway.
+int grid_step(double radius) { return radius >= 7.0 ? 2 : 1; }
+
 // Votes for centres of radius r, scaled so that a full, clear rim gives about 1 whatever r is.
-cv::Mat accumulate_votes(const std::vector<Vote>& votes, cv::Size size, double r) {
+cv::Mat accumulate_votes(const std::vector<Vote>& votes, cv::Size window, double r, int step) {
+  const cv::Size size((window.width + step - 1) / step, (window.height + step - 1) / step);
   cv::Mat sum = cv::Mat::zeros(size, CV_32F);
-  const float radius = static_cast<float>(r);
+  const float radius = static_cast<float>(r), fine = 1.0f / static_cast<float>(step);
   for (const Vote& e : votes) {
-    const int u = static_cast<int>(e.u + radius * e.du + 0.5f), v = static_cast<int>(e.v + radius * e.dv + 0.5f);
+    const int u = static_cast<int>((e.u + radius * e.du) * fine + 0.5f),
+              v = static_cast<int>((e.v + radius * e.dv) * fine + 0.5f);
     if (static_cast<unsigned>(u) < static_cast<unsigned>(size.width) &&
         static_cast<unsigned>(v) < static_cast<unsigned>(size.height))
       sum.ptr<float>(v)[u] += e.weight;
   }
   // Directions of gradients are good to a few degrees: the votes of one ball fill a spot that grows with r.
-  const double sigma = 0.8 + 0.06 * r;
+  const double sigma = std::max(0.6, (0.8 + 0.06 * r) / step);
   cv::GaussianBlur(sum, sum, {}, sigma);
   const double spot = 2 * kPi * sigma * sigma;  // peak of a unit vote spread over the spot is 1 / spot
   sum *= spot / (2 * kPi * r * 2.0);            // an edge is about two pixels wide
@@ -80,19 +87,37 @@ struct Peak {
   int size_class;
 };
 
-void find_peaks(const cv::Mat& votes, double least, double radius, int size_class, std::vector<Peak>& peaks) {
+void find_peaks(const cv::Mat& votes, int step, double least, double radius, int size_class, std::vector<Peak>& peaks) {
+  const float lowest = static_cast<float>(least);
   for (int v = 1; v + 1 < votes.rows; ++v) {
     const float* above = votes.ptr<float>(v - 1);
     const float* here = votes.ptr<float>(v);
     const float* below = votes.ptr<float>(v + 1);
     for (int u = 1; u + 1 < votes.cols; ++u) {
       const float h = here[u];
-      if (h < least || h < here[u - 1] || h <= here[u + 1] || h < above[u] || h <= below[u] || h < above[u - 1] ||
+      if (h < lowest || h < here[u - 1] || h <= here[u + 1] || h < above[u] || h <= below[u] || h < above[u - 1] ||
           h < above[u + 1] || h <= below[u - 1] || h <= below[u + 1])
         continue;
-      peaks.push_back({static_cast<double>(u), static_cast<double>(v), radius, h, size_class});
+      peaks.push_back({static_cast<double>(step * u), static_cast<double>(step * v), radius, h, size_class});
     }
   }
+}
+
+// Of the peaks of one class that lie within one ball only the highest.
+std::vector<Peak> thin_out(std::vector<Peak> peaks) {
+  std::sort(peaks.begin(), peaks.end(), [](const Peak& a, const Peak& b) {
+    if (a.height != b.height) return a.height > b.height;
+    return a.u != b.u ? a.u < b.u : a.v < b.v;
+  });
+  std::vector<Peak> kept;
+  for (const Peak& p : peaks) {
+    const double near = 0.5 * p.radius;
+    const bool taken = std::any_of(kept.begin(), kept.end(), [&](const Peak& k) {
+      return k.size_class == p.size_class && (k.u - p.u) * (k.u - p.u) + (k.v - p.v) * (k.v - p.v) < near * near;
+    });
+    if (!taken) kept.push_back(p);
+  }
+  return kept;
 }
 
 // Best first, each only where no better one lies in its place. Of two circles with equal rims the larger explains more
@@ -129,22 +154,23 @@ bool inside(const Detection& d, const Circle& bound) {
 
 Detection refine_on_rim(const EdgeMap& edges, int polarity, double u, double v, double radius, bool free_radius) {
   Detection d{u, v, radius, 0, 0};
-  constexpr int kSteps = 13;  // along each direction, odd
-  for (int round = 0; round < 3; ++round) {
-    const double reach = (round == 0 ? 0.35 : 0.2) * d.radius + 1.0;
+  constexpr int kSteps = 11;  // along each direction, odd
+  for (int round = 0; round < (free_radius ? 3 : 2); ++round) {
+    const double reach = (round == 0 ? 0.3 : 0.18) * d.radius + 1.0;
     const double step = 2 * reach / (kSteps - 1);
     double score = 0;
     double suu = 0, suv = 0, svv = 0, su = 0, sv = 0, s0 = 0, bu = 0, bv = 0, b0 = 0;
     for (const Direction& n : directions()) {
-      std::array<double, kSteps> response{};
+      std::array<float, kSteps> response{};
       int best = -1;
-      double most = 0;
+      float most = 0;
       for (int k = 0; k < kSteps; ++k) {
-        const double offset = -reach + k * step, r = d.radius + offset;
-        const double towards = -polarity * edges.along(d.u + r * n.u, d.v + r * n.v, n.u, n.v);
-        response[k] = std::max(0.0, towards);
-        const double x = offset / reach;
-        const double judged = response[k] * (1 - 0.5 * x * x);  // of two edges the nearer one
+        const float x = 2.0f * static_cast<float>(k) / (kSteps - 1) - 1.0f;
+        const float r = static_cast<float>(d.radius + reach * x);
+        const float towards =
+            edges.along(static_cast<float>(d.u) + r * n.u, static_cast<float>(d.v) + r * n.v, n.u, n.v);
+        response[k] = std::max(0.0f, static_cast<float>(-polarity) * towards);
+        const float judged = response[k] * (1 - 0.5f * x * x);  // of two edges the nearer one
         if (judged > most) {
           most = judged;
           best = k;
@@ -171,6 +197,7 @@ Detection refine_on_rim(const EdgeMap& edges, int polarity, double u, double v, 
       b0 += w * offset;
     }
     d.score = score / kDirections;
+    if (d.score < kHopeless) break;
     if (free_radius) {
       const cv::Matx33d a(suu, suv, su, suv, svv, sv, su, sv, s0);
       cv::Vec3d x;
@@ -194,11 +221,12 @@ std::vector<Detection> detect_balls(const cv::Mat& bgr, const BallLook& look, co
   const EdgeMap edges = make_edge_map(bgr, window, 0.8, look.edge_level);
   const auto votes = collect_votes(edges, look.polarity, bound);
   std::vector<Peak> peaks;
+  const int step = grid_step(look.radii.front());
   for (std::size_t k = 0; k < look.radii.size(); ++k)
-    find_peaks(accumulate_votes(votes, window.size(), look.radii[k]), 0.3 * look.least_score, look.radii[k],
+    find_peaks(accumulate_votes(votes, window.size(), look.radii[k], step), step, kLeastHeight, look.radii[k],
                static_cast<int>(k), peaks);
   std::vector<Detection> found;
-  for (const Peak& p : peaks) {
+  for (const Peak& p : thin_out(std::move(peaks))) {
     Detection d = refine_on_rim(edges, look.polarity, p.u + window.x, p.v + window.y, p.radius, false);
     d.size_class = p.size_class;
     if (std::hypot(d.u - p.u - window.x, d.v - p.v - window.y) > 0.5 * p.radius) continue;
@@ -218,7 +246,8 @@ std::vector<Detection> free_circles(const EdgeMap& edges, int polarity, const Ci
   std::vector<Detection> found;
   for (double r = smallest; r < largest; r *= 1.1) {
     std::vector<Peak> peaks;
-    find_peaks(accumulate_votes(votes, edges.gu.size(), r), 0.2, r, 0, peaks);
+    const int step = grid_step(r);
+    find_peaks(accumulate_votes(votes, edges.gradient.size(), r, step), step, 0.2, r, 0, peaks);
     constexpr std::size_t kMost = 400;
     if (peaks.size() > kMost) {
       std::nth_element(peaks.begin(), peaks.begin() + kMost, peaks.end(),

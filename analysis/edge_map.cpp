@@ -6,59 +6,49 @@
 
 namespace tumble::analysis {
 
-double EdgeMap::along(double u, double v, double nu, double nv) const {
-  const double x = u - origin.x, y = v - origin.y;
-  const int i = static_cast<int>(x), j = static_cast<int>(y);
-  if (x < 0 || y < 0 || i + 1 >= gu.cols || j + 1 >= gu.rows) return 0;
-  const double fx = x - i, fy = y - j;
-  const float* a = gu.ptr<float>(j) + i;
-  const float* b = gu.ptr<float>(j + 1) + i;
-  const float* c = gv.ptr<float>(j) + i;
-  const float* d = gv.ptr<float>(j + 1) + i;
-  const double w00 = (1 - fx) * (1 - fy), w10 = fx * (1 - fy), w01 = (1 - fx) * fy, w11 = fx * fy;
-  return nu * (w00 * a[0] + w10 * a[1] + w01 * b[0] + w11 * b[1]) +
-         nv * (w00 * c[0] + w10 * c[1] + w01 * d[0] + w11 * d[1]);
-}
-
 EdgeMap make_edge_map(const cv::Mat& bgr, const cv::Rect& window, double blur, double level) {
   EdgeMap map;
   map.origin = window.tl();
-  cv::Mat smooth, su, sv;
+  cv::Mat smooth;
   if (blur > 0)
-    cv::GaussianBlur(bgr(window), smooth, {}, blur);
+    cv::GaussianBlur(bgr(window), smooth, {3, 3}, blur);
   else
     smooth = bgr(window);
-  cv::Sobel(smooth, su, CV_16S, 1, 0, 3);
-  cv::Sobel(smooth, sv, CV_16S, 0, 1, 3);
-  map.gu.create(window.size(), CV_32F);
-  map.gv.create(window.size(), CV_32F);
-  map.magnitude.create(window.size(), CV_32F);
-  for (int v = 0; v < window.height; ++v) {
-    const short* a = su.ptr<short>(v);
-    const short* b = sv.ptr<short>(v);
-    float* gu = map.gu.ptr<float>(v);
-    float* gv = map.gv.ptr<float>(v);
-    float* m = map.magnitude.ptr<float>(v);
-    for (int u = 0; u < window.width; ++u) {
-      int best = -1, best_a = 0, best_b = 0;
-      for (int c = 0; c < 3; ++c) {
-        const int x = a[3 * u + c], y = b[3 * u + c], square = x * x + y * y;
-        if (square > best) {
-          best = square;
-          best_a = x;
-          best_b = y;
-        }
+  std::vector<cv::Mat> planes;
+  cv::split(smooth, planes);
+  map.gradient = cv::Mat::zeros(window.size(), CV_32FC2);
+  std::vector<int> best_u(static_cast<std::size_t>(window.width)), best_v(best_u), best(best_u);
+  for (int v = 1; v + 1 < window.height;
+       ++v) {  // Sobel of every channel, the strongest kept; plain loops that vectorise
+    std::fill(best.begin(), best.end(), -1);
+    for (const cv::Mat& plane : planes) {
+      const uchar* a = plane.ptr<uchar>(v - 1);
+      const uchar* b = plane.ptr<uchar>(v);
+      const uchar* c = plane.ptr<uchar>(v + 1);
+      for (int u = 1; u + 1 < window.width; ++u) {
+        const int x = a[u + 1] + 2 * b[u + 1] + c[u + 1] - a[u - 1] - 2 * b[u - 1] - c[u - 1];
+        const int y = c[u - 1] + 2 * c[u] + c[u + 1] - a[u - 1] - 2 * a[u] - a[u + 1];
+        const int square = x * x + y * y;
+        const bool more = square > best[u];
+        best_u[u] = more ? x : best_u[u];
+        best_v[u] = more ? y : best_v[u];
+        best[u] = more ? square : best[u];
       }
-      gu[u] = 0.125f * static_cast<float>(best_a);  // Sobel's weights sum to 8 per pixel of distance
-      gv[u] = 0.125f * static_cast<float>(best_b);
-      m[u] = 0.125f * std::sqrt(static_cast<float>(best));
+    }
+    float* g = map.gradient.ptr<float>(v);
+    for (int u = 1; u + 1 < window.width; ++u) {
+      g[2 * u] = 0.125f * static_cast<float>(best_u[u]);  // Sobel's weights sum to 8 per pixel of distance
+      g[2 * u + 1] = 0.125f * static_cast<float>(best_v[u]);
     }
   }
   map.level = level;
   if (level <= 0) {
     std::vector<float> sample;
     for (int v = 0; v < window.height; v += 2)
-      for (int u = 0; u < window.width; u += 2) sample.push_back(map.magnitude.at<float>(v, u));
+      for (int u = 0; u < window.width; u += 2) {
+        const auto& g = map.gradient.at<cv::Vec2f>(v, u);
+        sample.push_back(std::hypot(g[0], g[1]));
+      }
     auto at = sample.begin() + static_cast<std::ptrdiff_t>(0.9 * static_cast<double>(sample.size()));
     std::nth_element(sample.begin(), at, sample.end());
     map.level = std::max(1.0, 0.5 * *at);

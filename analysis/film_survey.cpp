@@ -22,9 +22,10 @@ Circle enclosing_circle(const std::vector<RingEdge>& rings) {
     const double w = std::abs(r.strength) * r.coverage;
     if (w < 0.1 * strongest || r.coverage < 0.55) continue;
     circle.radius = std::max(circle.radius, r.circle.radius);
-    circle.u += w * r.coverage * r.circle.u;
-    circle.v += w * r.coverage * r.circle.v;
-    weight += w * r.coverage;
+    const double whole = std::pow(r.coverage, 6);  // an arc pulls its centre aside: whole circles have the say
+    circle.u += w * whole * r.circle.u;
+    circle.v += w * whole * r.circle.v;
+    weight += w * whole;
   }
   if (weight == 0) return {};
   circle.u /= weight;

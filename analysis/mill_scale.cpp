@@ -102,7 +102,7 @@ ShellTouch find_shell_touch(const std::vector<std::vector<Detection>>& frames, i
       const cv::Matx22d spread(a(1, 1) - a(0, 1) * a(0, 1) / a(0, 0), a(1, 2) - a(0, 1) * a(0, 2) / a(0, 0),
                                a(1, 2) - a(0, 1) * a(0, 2) / a(0, 0), a(2, 2) - a(0, 2) * a(0, 2) / a(0, 0));
       const double weaker = 0.5 * (spread(0, 0) + spread(1, 1)) -
-                           std::sqrt(0.25 * std::pow(spread(0, 0) - spread(1, 1), 2) + spread(0, 1) * spread(0, 1));
+                            std::sqrt(0.25 * std::pow(spread(0, 0) - spread(1, 1), 2) + spread(0, 1) * spread(0, 1));
       if (weaker > 0.04 * a(0, 0) && cv::solve(a, b, x, cv::DECOMP_CHOLESKY)) {
         touch.reach = x[0];
         touch.shift_u = x[1];
