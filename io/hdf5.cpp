@@ -26,16 +26,13 @@ herr_t look_for_reason(unsigned, const H5E_error2_t* entry, void* found) {
 
 Properties properties(hid_t kind) { return Properties(checked(H5Pcreate(kind), "make a property list")); }
 
-Properties links_with_groups() {
-  Properties links = properties(H5P_LINK_CREATE);
-  checked(H5Pset_create_intermediate_group(links, 1), "ask for groups on the way");
-  return links;
-}
-
 Properties file_access() {
   Properties access = properties(H5P_FILE_ACCESS);
   // The library's own lock would let a program that only watches a run stop its end.
   checked(H5Pset_file_locking(access, false, true), "do without file locks");
+  // The format of HDF5 1.8: unlike the oldest it has checksums over what describes the file, so damage is noticed
+  // before the library trusts it; unlike the newest it has no flag "open for writing" that a killed writer leaves.
+  checked(H5Pset_libver_bounds(access, H5F_LIBVER_V18, H5F_LIBVER_V18), "choose the format");
   return access;
 }
 
@@ -125,9 +122,11 @@ void close_file(File file) { checked(H5Fflush(file, H5F_SCOPE_LOCAL), "write the
 
 Group make_group(hid_t parent, const std::string& path) {
   if (exists(parent, path)) return Group(checked(H5Gopen2(parent, path.c_str(), H5P_DEFAULT), "open group " + path));
+  // Step by step: groups that the library makes on the way record the time.
+  if (const auto slash = path.rfind('/'); slash != std::string::npos) make_group(parent, path.substr(0, slash));
   Properties creation = properties(H5P_GROUP_CREATE);
   checked(H5Pset_obj_track_times(creation, false), "leave out times");
-  return Group(checked(H5Gcreate2(parent, path.c_str(), links_with_groups(), creation, H5P_DEFAULT), "make " + path));
+  return Group(checked(H5Gcreate2(parent, path.c_str(), H5P_DEFAULT, creation, H5P_DEFAULT), "make " + path));
 }
 
 bool exists(hid_t parent, const std::string& path) {
@@ -140,9 +139,9 @@ bool exists(hid_t parent, const std::string& path) {
 Dataset make_array(hid_t parent, const std::string& path, hid_t type, const Shape& shape, const std::string& unit,
                    Fill fill) {
   if (const auto slash = path.rfind('/'); slash != std::string::npos) make_group(parent, path.substr(0, slash));
-  Dataset set(checked(H5Dcreate2(parent, path.c_str(), type, make_space(shape), links_with_groups(),
-                                 dataset_creation(fill), H5P_DEFAULT),
-                      "make " + path));
+  Dataset set(checked(
+      H5Dcreate2(parent, path.c_str(), type, make_space(shape), H5P_DEFAULT, dataset_creation(fill), H5P_DEFAULT),
+      "make " + path));
   if (!unit.empty()) set_attribute(set, "unit", unit);
   return set;
 }
