@@ -142,27 +142,28 @@ void render_run(const io::RunReader& run, const ChargeMotion& truth, const FilmP
   ProgressLine line(options, "rendering", "nothing was written under " + output.string());
   const Progress progress = line.callback();
   RunPlayer player(run);
-  const bool trails = plan.style.overlay.tracks;
-  constexpr int kTrail = 12;
+  // Trails show a fixed stretch of true time: so many film frames before each.
+  const std::size_t trail =
+      plan.style.overlay.tracks ? static_cast<std::size_t>(std::ceil(renderers[0]->trail_seconds() / step)) : 0;
   std::vector<Image> images(workers * kEach);
   std::vector<Frame> frames(workers * kEach);
   for (std::size_t from = 0; from < count; from += images.size()) {
     report(progress, double(from) / double(count));
     const std::size_t n = std::min(images.size(), count - from);
     std::vector<Frame> before;  // for trails: the film frames before this batch, then the batch itself
-    if (trails)
-      for (std::size_t k = from > kTrail ? from - kTrail : 0; k < from; ++k)
+    if (trail > 0)
+      for (std::size_t k = from > trail ? from - trail : 0; k < from; ++k)
         before.push_back(player.at(run.time().front() + double(k) * step));
     const std::size_t lead = before.size();
     for (std::size_t i = 0; i < n; ++i) frames[i] = player.at(run.time().front() + double(from + i) * step);
-    if (trails) before.insert(before.end(), frames.begin(), frames.begin() + static_cast<std::ptrdiff_t>(n));
+    if (trail > 0) before.insert(before.end(), frames.begin(), frames.begin() + static_cast<std::ptrdiff_t>(n));
 
     parallel_for(workers, 1, [&](std::size_t w, std::size_t) {
       for (std::size_t i = w * kEach; i < std::min(n, (w + 1) * kEach); ++i) {
         const Marks marks = marks_at(truth, frames[i].time - run.time().front(), stored_rate);
         render::Moment moment{marks.toe_deg, marks.shoulder_deg, run.time(), run.torque(), {}};
-        if (trails) {
-          const std::size_t here = lead + i, first = here > kTrail ? here - kTrail : 0;
+        if (trail > 0) {
+          const std::size_t here = lead + i, first = here > trail ? here - trail : 0;
           moment.past = std::span<const Frame>(before).subspan(first, here - first);
         }
         images[i] = renderers[w]->draw(frames[i], moment);
