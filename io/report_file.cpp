@@ -181,11 +181,11 @@ std::string rows_of(const Deviation& deviation) {
   std::string rows;
   for (const Difference& d : deviation.differences) {
     if (!std::isfinite(d.b.value)) continue;  // torque: a film has none, and the truth's stands above
-    // Both in the digits of the better known one, so that they can be compared by eye.
+    // What has no error of its own takes the digits of the difference, so that the two can be compared by eye.
+    const auto shown = [&](const Estimate& e) { return e.se > 0 ? with_error(e) : number(e.value, d.se); };
     rows += fmt::format("<tr{}><th scope=\"row\">{}</th><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td></tr>",
-                        std::abs(d.z) > 3 ? " class=\"far\"" : "", words_for(d.name), escaped(d.unit), with_error(d.a),
-                        with_error(d.b), with_error({d.difference, d.se}),
-                        std::isfinite(d.z) ? fmt::format("{:.1f}", d.z) : "–");
+                        std::abs(d.z) > 3 ? " class=\"far\"" : "", words_for(d.name), escaped(d.unit), shown(d.a),
+                        shown(d.b), with_error({d.difference, d.se}), number(d.z, 1));
   }
   return rows;
 }

@@ -17,8 +17,9 @@ std::string valid_utf8(const std::string& text) {
   return Json::parse(Json(text).dump(-1, ' ', false, Json::error_handler_t::replace)).get<std::string>();
 }
 
-// A hyphen is not a minus.
+// A hyphen is not a minus, and nothing has no sign.
 std::string typeset(std::string digits) {
+  if (digits.find_first_of("123456789") == std::string::npos && digits.starts_with('-')) digits.erase(0, 1);
   if (!digits.empty() && digits[0] == '-') digits.replace(0, 1, kMinus);
   return digits;
 }

@@ -51,6 +51,7 @@ TEST(Html, NumbersHaveTheDigitsTheirErrorAllows) {
   EXPECT_EQ(with_error({1234.5, 56.0}), "1234\u00a0±\u00a056");
   EXPECT_EQ(with_error({0.406913, 0}), "0.4069");
   EXPECT_EQ(with_error({0.406913, kNotGiven}), "0.4069");
+  EXPECT_EQ(with_error({-0.001, 0.5}), "0.00\u00a0±\u00a00.50");
   EXPECT_EQ(with_error({}), "–");
 }
 
