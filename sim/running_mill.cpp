@@ -241,7 +241,7 @@ RunningMill start_mill(const MillModel& model, Charge charge) {
     c.vy[i] -= half_fall;
     mill.fastest = std::max(mill.fastest, std::hypot(c.vx[i], c.vy[i]));
   }
-  mill.skin = 0.3 * *std::min_element(c.radius.begin(), c.radius.end());
+  mill.skin = 0.4 * *std::min_element(c.radius.begin(), c.radius.end());
   return mill;
 }
 
