@@ -1,0 +1,149 @@
+#include "analysis/tracking.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "analysis/assignment.h"
+#include "core/random.h"
+
+namespace tumble::analysis {
+namespace {
+
+TEST(Assignment, TakesTheCheapestWholeNotTheCheapestPair) {
+  // Row 0 likes column 0 best, but row 1 can only have column 0.
+  const auto chosen = assign({{0, 0, 1.0}, {0, 1, 2.0}, {1, 0, 1.5}}, 10.0);
+  EXPECT_EQ(chosen, (std::vector<std::pair<int, int>>{{0, 1}, {1, 0}}));
+}
+
+TEST(Assignment, LeavesARowAloneRatherThanPayMore) {
+  EXPECT_TRUE(assign({{0, 0, 11.0}}, 10.0).empty());
+  EXPECT_EQ(assign({{0, 0, 9.0}, {1, 0, 1.0}}, 10.0), (std::vector<std::pair<int, int>>{{1, 0}}));
+}
+
+TEST(Assignment, IsOptimalOnRandomTables) {
+  Random random(3);
+  for (int trial = 0; trial < 50; ++trial) {
+    std::vector<Pairing> table;
+    double cost[5][5];
+    for (int i = 0; i < 5; ++i)
+      for (int j = 0; j < 5; ++j) table.push_back({i, j, cost[i][j] = random.uniform()});
+    double got = 0;
+    for (const auto& [i, j] : assign(table, 10.0)) got += cost[i][j];
+    std::vector<int> order = {0, 1, 2, 3, 4};
+    double best = 1e9;
+    do {
+      double sum = 0;
+      for (int i = 0; i < 5; ++i) sum += cost[i][order[i]];
+      best = std::min(best, sum);
+    } while (std::next_permutation(order.begin(), order.end()));
+    EXPECT_NEAR(got, best, 1e-12);
+  }
+}
+
+struct Scene {
+  std::vector<std::vector<Sighting>> frames;
+  std::vector<std::vector<int>> truth;  // whose each sighting is
+};
+
+int count_switches(const Scene& scene) {
+  std::map<int, int> last;
+  int switches = 0;
+  for (std::size_t f = 0; f < scene.frames.size(); ++f)
+    for (std::size_t k = 0; k < scene.frames[f].size(); ++k) {
+      const int path = scene.frames[f][k].track;
+      if (path < 0) continue;
+      const auto known = last.find(path);
+      if (known != last.end() && known->second != scene.truth[f][k]) ++switches;
+      last[path] = scene.truth[f][k];
+    }
+  return switches;
+}
+
+// A carried ring of touching balls, and balls in flight that cross in front of each other, one in ten unseen.
+Scene crossing_paths(std::uint64_t seed) {
+  Scene scene;
+  Random random(seed);
+  const double turn = 0.02, g = 0.25;
+  for (int f = 0; f < 40; ++f) {
+    std::vector<Sighting> here;
+    std::vector<int> whose;
+    const auto add = [&](int id, double x, double y) {
+      if (id >= 100 && random.uniform() < 0.1) return;
+      Sighting s;
+      s.x = x + random.uniform(-0.3, 0.3);
+      s.y = y + random.uniform(-0.3, 0.3);
+      s.radius = 12;
+      s.score = 0.4;
+      here.push_back(s);
+      whose.push_back(id);
+    };
+    for (int k = 0; k < 20; ++k) {
+      const double a = -2.0 + 24.5 / 250 * k + turn * f;
+      add(k, 250 * std::cos(a), 250 * std::sin(a));
+    }
+    for (int k = 0; k < 6; ++k) {  // towards each other, meeting about frame 20
+      const double side = k % 2 == 0 ? 1 : -1, t = f;
+      add(100 + k, side * (-160 + 8.0 * t), 40 * k - 60 + 5 * t - 0.5 * g * t * t);
+    }
+    scene.frames.push_back(here);
+    scene.truth.push_back(whose);
+  }
+  return scene;
+}
+
+TEST(Tracking, KeepsIdentitiesOfCarriedAndCrossingBalls) {
+  for (std::uint64_t seed : {1u, 2u, 3u}) {
+    Scene scene = crossing_paths(seed);
+    MotionModel model;
+    model.turn = 0.02;
+    model.gravity = 0.25;
+    model.tip_radius = 260;
+    model.birth_score = 0.3;
+    const int paths = link_sightings(scene.frames, model);
+    EXPECT_EQ(count_switches(scene), 0);
+    EXPECT_LE(paths, 27);  // 26 balls; at most one path broken by a run of unseen frames
+  }
+}
+
+TEST(Tracking, DropsWhatStandsStillWhileTheMillTurns) {
+  std::vector<std::vector<Sighting>> frames(60);
+  for (int f = 0; f < 60; ++f) {
+    Sighting still, carried;
+    still.x = 100;
+    still.y = 100;
+    carried.x = 200 * std::cos(0.03 * f);
+    carried.y = 200 * std::sin(0.03 * f);
+    still.radius = carried.radius = 10;
+    still.score = carried.score = 0.5;
+    frames[f] = {still, carried};
+  }
+  MotionModel model;
+  model.turn = 0.03;
+  model.tip_radius = 230;
+  model.birth_score = 0.3;
+  EXPECT_EQ(link_sightings(frames, model), 1);
+  EXPECT_EQ(frames[30][0].track, -1);
+  EXPECT_EQ(frames[30][1].track, 0);
+}
+
+TEST(Tracking, VelocityOfAParabolaIsExact) {
+  std::vector<std::vector<Sighting>> frames(9);
+  for (int f = 0; f < 9; ++f) {
+    Sighting s;
+    s.x = 3.0 * f;
+    s.y = 2.0 * f - 0.5 * 0.4 * f * f;
+    s.track = 0;
+    frames[f] = {s};
+  }
+  smooth_velocities(frames, 5);
+  for (int f = 0; f < 9; ++f) {
+    EXPECT_NEAR(frames[f][0].vx, 3.0, 1e-9);
+    EXPECT_NEAR(frames[f][0].vy, 2.0 - 0.4 * f, 1e-9);
+  }
+}
+
+}  // namespace
+}  // namespace tumble::analysis
