@@ -184,14 +184,16 @@ ChargeMotion measure(const fs::path& input, const analysis::FilmOptions& film, c
   std::error_code error;
   if (!fs::exists(input, error))
     throw InputError(input.string(), "does not exist; give a film, a folder or a run file");
+  ChargeMotion motion;
   if (looks_like_hdf5(input)) {
-    ChargeMotion motion = measure_run(io::RunReader(input), options);
-    motion.origin = input.string();
-    return motion;
+    motion = measure_run(io::RunReader(input), options);
+  } else {
+    ProgressLine line(options, "reading the film", "nothing was written");
+    motion = fs::is_directory(input, error) ? analysis::measure_stills(input.string(), film, line.callback())
+                                            : analysis::measure_film(input.string(), film, line.callback());
   }
-  ProgressLine line(options, "reading the film", "nothing was written");
-  if (fs::is_directory(input, error)) return analysis::measure_stills(input.string(), film, line.callback());
-  return analysis::measure_film(input.string(), film, line.callback());
+  motion.origin = input.string();
+  return motion;
 }
 
 }  // namespace tumble::cli
