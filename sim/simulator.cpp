@@ -188,8 +188,9 @@ RunResult result_of(const Config& config, const RunState& run) {
   else if (!s.steady)
     say(fmt::format(
         "The averages drift: between the first and the second half torque by {:+.1f} and centre of mass by "
-        "{:+.1f} standard errors, {:+.1f} balls locked meanwhile; spin_up = \"auto\" waits until they are steady.",
-        s.torque_z, s.closure_z, s.locked_change));
+        "{:+.1f} standard errors, {:+.1f} balls locked meanwhile; {}.",
+        s.torque_z, s.closure_z, s.locked_change,
+        config.run.spin_up_auto ? "take a larger run.revolutions" : "spin_up = \"auto\" waits until they are steady"));
   if (run.locked.count > 0 && speed_fraction(config.mill) < 1)
     say(fmt::format(
         "{} of {} balls are locked between the lifters and turn with the shell: an artefact of the plane slice "
