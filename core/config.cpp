@@ -164,6 +164,10 @@ void check_complete(const Config& config) {
   if (std::isnan(config.mill.speed) && std::isnan(config.mill.speed_rpm))
     c.fail("mill.speed", "is missing; give the fraction of critical speed, or mill.speed_rpm");
   const Lifters& l = config.mill.lifters;
+  // A file with sizes and no shape would give a smooth shell that nobody asked for.
+  const auto said = [&](const char* key) { return config.origin.contains(std::string("mill.lifters.") + key); };
+  if (!said("profile") && (said("count") || said("height") || said("width")))
+    c.fail("mill.lifters.profile", "is missing; give \"rectangle\", \"triangle\" or \"trapezoid\", or \"none\"");
   if (l.profile != LifterProfile::kNone) {
     if (l.count < 1) c.fail("mill.lifters.count", "is missing; give the number of lifters, or profile = \"none\"");
     c.given("mill.lifters.height", l.height, "the height above the shell in m");

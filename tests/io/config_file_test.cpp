@@ -124,6 +124,21 @@ TEST(ConfigFile, RangesAreCheckedWithTheLine) {
   EXPECT_THAT(message_of(kMill, {"charge.filling=0.95"}), StartsWith("--set: charge.filling: "));
 }
 
+TEST(ConfigFile, LifterSizesWithoutAProfileAreNotASmoothShell) {
+  std::string toml = kMill;
+  const std::string profile = "profile = \"rectangle\"\n";
+  toml.erase(toml.find(profile), profile.size());
+  const Config partial = parse_config(toml, "mill.toml");  // enough to analyse a film
+  try {
+    check_complete(partial);
+    FAIL();
+  } catch (const InputError& e) {
+    EXPECT_THAT(e.what(), StartsWith("mill.toml: mill.lifters.profile: is missing; give \"rectangle\""));
+  }
+  EXPECT_NO_THROW(check_complete(parse_config(toml, "mill.toml", {"mill.lifters.profile=none"})));
+  EXPECT_NO_THROW(check_complete(parse_config(to_toml(parse_config(kMill, "m")), "m")));
+}
+
 TEST(ConfigFile, DensityGivesTheMassOfASphere) {
   const Config c = parse_config("[charge]\nballs = [ { radius = 0.5, density = 6 } ]", "m");
   EXPECT_DOUBLE_EQ(c.charge.balls[0].mass, 3.14159265358979323846);  // pi / 6 d^3 rho
