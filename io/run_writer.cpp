@@ -1,15 +1,13 @@
 #include <fcntl.h>
-#include <sys/file.h>
 #include <unistd.h>
 
-#include <cerrno>
 #include <cmath>
-#include <cstring>
 
 #include "core/error.h"
 #include "core/version.h"
 #include "io/config_file.h"
 #include "io/hdf5.h"
+#include "io/in_place_file.h"
 #include "io/run_file.h"
 #include "io/run_layout.h"
 #include "io/xdmf_file.h"
@@ -24,74 +22,6 @@ namespace tumble::io {
 namespace fs = std::filesystem;
 using namespace run_layout;
 namespace {
-
-// A file that is changed in place.
-class InPlace {
- public:
-  InPlace() = default;
-  InPlace(const fs::path& path, const fs::path& shown) : shown_(shown) {
-    file_ = open(path.c_str(), O_RDWR | O_CLOEXEC);
-    if (file_ < 0) fail("cannot be opened", errno);
-  }
-  ~InPlace() {
-    if (file_ >= 0) close(file_);
-  }
-  InPlace(InPlace&& other) noexcept : file_(std::exchange(other.file_, -1)), shown_(std::move(other.shown_)) {}
-  InPlace& operator=(InPlace&& other) noexcept {
-    std::swap(file_, other.file_);
-    std::swap(shown_, other.shown_);
-    return *this;
-  }
-
-  void write(std::uint64_t offset, const void* bytes, std::size_t size) const {
-    const char* from = static_cast<const char*>(bytes);
-    while (size > 0) {
-      const ssize_t written = pwrite(file_, from, size, static_cast<off_t>(offset));
-      if (written < 0 && errno == EINTR) continue;
-      if (written <= 0) fail("cannot be written", written < 0 ? errno : ENOSPC);
-      from += written;
-      offset += static_cast<std::uint64_t>(written);
-      size -= static_cast<std::size_t>(written);
-    }
-  }
-
-  // One writer at a time. A shared lock is kept, so that HDF5 programs may look at the run while it goes on.
-  void claim() const {
-    if (flock(file_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
-      throw WorkError(shown_.string(), "is in use by another program; wait for it or choose another output");
-    flock(file_, LOCK_SH | LOCK_NB);  // file systems without locks do without
-  }
-
-  // Asks for all of the disk space now: better than to fail after hours.
-  void reserve() const {
-    const off_t size = lseek(file_, 0, SEEK_END);
-    if (fallocate(file_, 0, 0, size) != 0 && (errno == ENOSPC || errno == EFBIG || errno == EDQUOT)) {
-      const int why = errno;
-      throw WorkError(shown_.string(), "needs " + std::to_string(size / 1'000'000 + 1) + " MB: " + std::strerror(why));
-    }
-  }
-
-  // Gives the bytes back to the disk; they read as zeros.
-  void wipe(std::uint64_t offset, std::uint64_t size) const {
-    if (fallocate(file_, FALLOC_FL_PUNCH_HOLE | FALLOC_FL_KEEP_SIZE, static_cast<off_t>(offset),
-                  static_cast<off_t>(size)) == 0)
-      return;
-    const std::vector<char> zeros(std::size_t{1} << 20);
-    for (std::uint64_t done = 0; done < size; done += zeros.size())
-      write(offset + done, zeros.data(), std::min<std::uint64_t>(zeros.size(), size - done));
-  }
-
-  void sync() const {
-    if (fsync(file_) != 0) fail("cannot be brought to the disk", errno);
-  }
-
- private:
-  [[noreturn]] void fail(const std::string& what, int why) const {
-    throw WorkError(shown_.string(), what + ": " + std::strerror(why));
-  }
-  int file_ = -1;
-  fs::path shown_;
-};
 
 // Where things lie in the file [bytes from its begin].
 struct Places {
@@ -308,7 +238,7 @@ void put_in_place(const fs::path& part, const fs::path& path) {
 struct RunWriter::Impl {
   fs::path path, part;
   RunSetup setup;
-  InPlace file;
+  InPlaceFile file;
   Places places;
   std::int64_t frames_written = 0;
   Slot last_slot;
@@ -420,10 +350,10 @@ RunWriter::RunWriter(const fs::path& path, const RunSetup& setup, std::size_t ch
       impl_->places = find_places(file, setup);
       hdf5::close_file(std::move(file));
     }
-    InPlace file(layout, path);
+    InPlaceFile file(layout, path);
     file.claim();
     file.reserve();
-    if (fs::exists(impl_->part)) InPlace(impl_->part, impl_->part).claim();  // not under another writer's feet
+    if (fs::exists(impl_->part)) InPlaceFile(impl_->part, impl_->part).claim();  // not under another writer's feet
     fs::rename(layout, impl_->part);
     impl_->file = std::move(file);
     impl_->owns_part = true;
@@ -463,7 +393,7 @@ RunWriter RunWriter::resume(const fs::path& path, const RunSetup& setup) {
   } catch (const hdf5::Failure& e) {
     throw not_resumable(impl->part, e.what());
   }
-  impl->file = InPlace(impl->part, impl->part);
+  impl->file = InPlaceFile(impl->part, impl->part);
   impl->file.claim();
   impl->drop_frames_from(impl->last_slot.frames_written);
   return RunWriter(std::move(impl));
@@ -511,7 +441,7 @@ bool adopt_complete_run(const fs::path& path, const Config& config) {
     refuse_another_run(hdf5::open_file(part, hdf5::Access::kRead), part, config);
   }
   {
-    const InPlace file(part, part);
+    const InPlaceFile file(part, part);
     file.claim();
     const auto held = hdf5::lock();
     const Places places = find_places(hdf5::open_file(part, hdf5::Access::kRead), setup);

@@ -1,0 +1,75 @@
+#include "io/in_place_file.h"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <utility>
+#include <vector>
+
+#include "core/error.h"
+
+namespace tumble::io {
+
+InPlaceFile::InPlaceFile(const std::filesystem::path& path, const std::filesystem::path& shown) : shown_(shown) {
+  file_ = open(path.c_str(), O_RDWR | O_CLOEXEC);
+  if (file_ < 0) fail("cannot be opened", errno);
+}
+InPlaceFile::~InPlaceFile() {
+  if (file_ >= 0) close(file_);
+}
+InPlaceFile::InPlaceFile(InPlaceFile&& other) noexcept
+    : file_(std::exchange(other.file_, -1)), shown_(std::move(other.shown_)) {}
+InPlaceFile& InPlaceFile::operator=(InPlaceFile&& other) noexcept {
+  std::swap(file_, other.file_);
+  std::swap(shown_, other.shown_);
+  return *this;
+}
+
+void InPlaceFile::write(std::uint64_t offset, const void* bytes, std::size_t size) const {
+  const char* from = static_cast<const char*>(bytes);
+  while (size > 0) {
+    const ssize_t written = pwrite(file_, from, size, static_cast<off_t>(offset));
+    if (written < 0 && errno == EINTR) continue;
+    if (written <= 0) fail("cannot be written", written < 0 ? errno : ENOSPC);
+    from += written;
+    offset += static_cast<std::uint64_t>(written);
+    size -= static_cast<std::size_t>(written);
+  }
+}
+
+void InPlaceFile::claim() const {
+  if (flock(file_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
+    throw WorkError(shown_.string(), "is in use by another program; wait for it or choose another output");
+  flock(file_, LOCK_SH | LOCK_NB);  // file systems without locks do without
+}
+
+void InPlaceFile::reserve() const {
+  const off_t size = lseek(file_, 0, SEEK_END);
+  if (fallocate(file_, 0, 0, size) == 0) return;
+  const int why = errno;  // a file system that cannot promise space takes what it has as it comes
+  if (why == ENOSPC || why == EFBIG || why == EDQUOT)
+    throw WorkError(shown_.string(), "needs " + std::to_string(size / 1'000'000 + 1) + " MB: " + std::strerror(why));
+}
+
+void InPlaceFile::wipe(std::uint64_t offset, std::uint64_t size) const {
+  if (fallocate(file_, FALLOC_FL_PUNCH_HOLE | FALLOC_FL_KEEP_SIZE, static_cast<off_t>(offset),
+                static_cast<off_t>(size)) == 0)
+    return;
+  const std::vector<char> zeros(std::size_t{1} << 20);
+  for (std::uint64_t done = 0; done < size; done += zeros.size())
+    write(offset + done, zeros.data(), std::min<std::uint64_t>(zeros.size(), size - done));
+}
+
+void InPlaceFile::sync() const {
+  if (fsync(file_) != 0) fail("cannot be brought to the disk", errno);
+}
+
+void InPlaceFile::fail(const char* what, int why) const {
+  throw WorkError(shown_.string(), std::string(what) + ": " + std::strerror(why));
+}
+
+}  // namespace tumble::io
