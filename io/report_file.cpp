@@ -79,7 +79,7 @@ std::string title_of(const Config& c) {
                      speed_fraction(c.mill));
 }
 
-std::string degrees_of(const Estimate& e) { return with_error(e) + "°"; }
+std::string degrees_of(const Estimate& e) { return std::isfinite(e.value) ? with_error(e) + "°" : "not found"; }
 
 // The report's first sentences: what was run and what was found.
 std::string lead_of(const RunReport& r) {

@@ -200,7 +200,9 @@ TEST_F(Report, SaysWhenTheFilmGaveNothing) {
   story.film = {};
   story.film.ring_occupancy.fill(kNotGiven);
   story.deviation.differences.clear();
-  EXPECT_TRUE(says(page_of(story), "The film alone did not give both toe and shoulder."));
+  const std::string page = page_of(story);
+  EXPECT_TRUE(says(page, "The film alone did not give both toe and shoulder."));
+  EXPECT_TRUE(says(page, "<dt>Toe in the film</dt><dd>not found<small>"));
 }
 
 // Toe at 270 degrees is straight down: in the picture's coordinates (y down) at positive y.
