@@ -34,5 +34,18 @@ TEST(Momentum, IsKeptBetweenTwoBalls) {
   EXPECT_NEAR(after.l, before.l, 1e-14);
 }
 
+// Grip so strong that nothing slides: what the tangential spring still holds at parting is lost, and booked as lost.
+TEST(Momentum, ObliqueImpactLosesWhatTheAccountsSay) {
+  RunningMill mill = start_mill(smooth_shell(1, 0, springs(0.6, 20), 1e-5),
+                                charge_of({{.x = -0.03, .vx = 1, .vy = 0.7}, {.x = 0, .y = 0.004}}));
+  const double before = energies_of(mill).kinetic;
+  advance_by(mill, 0.03);
+  const double lost = before - energies_of(mill).kinetic;
+  const double normal = mill.ledger.dissipated[std::size_t(Cause::kBallBallNormal)];
+  const double sliding = mill.ledger.dissipated[std::size_t(Cause::kBallBallSliding)];
+  EXPECT_GT(sliding, 0.02 * lost);
+  EXPECT_NEAR(normal + sliding, lost, 2e-3 * lost);
+}
+
 }  // namespace
 }  // namespace tumble::sim
