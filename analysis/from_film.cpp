@@ -82,8 +82,9 @@ std::vector<std::vector<Sighting>> sightings_of(const Pass& pass, const MillView
     for (const Detection& d : pass.balls[f]) {
       Sighting s;
       s.radius = view.radii[static_cast<std::size_t>(d.size_class)];
-      s.x = (clockwise ? -1.0 : 1.0) * (d.u + view.shift_u - view.mill.u);
-      s.y = -(d.v + view.shift_v - view.mill.v);
+      const cv::Point2d place = about_axis(d, view);
+      s.x = (clockwise ? -1.0 : 1.0) * place.x;
+      s.y = place.y;
       s.size_class = d.size_class;
       s.score = d.score;
       if (std::hypot(s.x, s.y) + s.radius > view.mill.radius + 0.3 * s.radius) continue;

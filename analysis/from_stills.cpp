@@ -138,11 +138,12 @@ ChargeMotion measure_stills(const std::string& folder, const FilmOptions& option
       p.frame = static_cast<int>(i);
       p.id = id++;
       p.time = kNotGiven;
-      p.x = (clockwise ? -1 : 1) * (d.u + view.shift_u - view.mill.u) * unit;
-      p.y = -(d.v + view.shift_v - view.mill.v) * unit;
+      const cv::Point2d place = about_axis(d, view), centre = true_centre(d, view);
+      p.x = (clockwise ? -1 : 1) * place.x * unit;
+      p.y = place.y * unit;
       p.radius = view.radii[static_cast<std::size_t>(d.size_class)] * unit;
-      p.u_px = d.u + view.shift_u;
-      p.v_px = d.v + view.shift_v;
+      p.u_px = centre.x;
+      p.v_px = centre.y;
       points.push_back(p);
     }
     statistics.add(static_cast<int>(i), kNotGiven, kNotGiven, points);

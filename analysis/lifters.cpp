@@ -13,8 +13,8 @@ struct Place {
 };
 
 Place place_of(const Detection& d, const MillView& view) {
-  const double x = d.u + view.shift_u - view.mill.u, y = -(d.v + view.shift_v - view.mill.v);
-  return {std::hypot(x, y), std::atan2(y, x)};
+  const cv::Point2d p = about_axis(d, view);
+  return {std::hypot(p.x, p.y), std::atan2(p.y, p.x)};
 }
 
 }  // namespace

@@ -12,6 +12,16 @@ constexpr double kSnap = 0.006;  // of R: an edge this near to where the balls s
 
 }  // namespace
 
+cv::Point2d true_centre(const Detection& ball, const MillView& view) {
+  const double r = view.radii[static_cast<std::size_t>(ball.size_class)];
+  return {ball.u + view.shift_u * r, ball.v + view.shift_v * r};
+}
+
+cv::Point2d about_axis(const Detection& ball, const MillView& view) {
+  const cv::Point2d centre = true_centre(ball, view);
+  return {centre.x - view.mill.u, view.mill.v - centre.y};
+}
+
 std::vector<double> known_radii(const Config& known) {
   std::vector<double> radii;
   for (const BallClass& c : known.charge.balls)
@@ -51,17 +61,19 @@ MillView find_view(const std::vector<std::vector<Detection>>& balls, const BallL
   // says where to look.
   const double guess = scale > 0 && mill_radius > 0 ? mill_radius / scale : 0;
   ShellTouch best;
+  double best_radius = 1;
   for (std::size_t c = 0; c < classes; ++c) {
     const double least = guess > 0 ? 0.98 * guess - radii[c] : 0, most = guess > 0 ? 1.02 * guess - radii[c] : 1e9;
     const ShellTouch touch = find_shell_touch(balls, static_cast<int>(c), radii, survey.centre, least, most);
     if (!touch.found || touch.count <= best.count) continue;
     best = touch;
+    best_radius = radii[c];
     const bool ratio_known = sizes_known && mill_radius > 0;
     view.mill.radius = ratio_known ? touch.reach / (1 - sizes[c] / mill_radius) : touch.reach + radii[c];
   }
   if (best.found) {
-    view.shift_u = best.shift_u;
-    view.shift_v = best.shift_v;
+    view.shift_u = best.shift_u / best_radius;
+    view.shift_v = best.shift_v / best_radius;
   } else {
     if (guess > 0) view.mill.radius = guess;
     caveats.push_back("few balls were seen to lie against the shell: its circle is a guess from the picture's edges");

@@ -14,8 +14,12 @@ struct MillView {
   double tip_radius = 0;  // of the lifter tips [px]
   double metres_per_pixel = kNotGiven;
   std::vector<double> radii;        // true ones of the size classes [px]
-  double shift_u = 0, shift_v = 0;  // from detected centres to true ones [px]
+  double shift_u = 0, shift_v = 0;  // from detected centres to true ones, in radii: light falls on all balls alike
 };
+
+// True centre of a detected ball [px], v down, and about the mill's axis [px], y up, as the camera sees it.
+cv::Point2d true_centre(const Detection& ball, const MillView& view);
+cv::Point2d about_axis(const Detection& ball, const MillView& view);
 
 // Ball radii that the config names [m], ascending; empty where it names none.
 std::vector<double> known_radii(const Config& known);
