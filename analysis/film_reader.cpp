@@ -1,5 +1,6 @@
 #include "analysis/film_reader.h"
 
+#include <cstdlib>
 #include <filesystem>
 #include <opencv2/core/utils/logger.hpp>
 #include <opencv2/imgproc.hpp>
@@ -26,6 +27,7 @@ FilmReader::FilmReader(const std::string& path) {
   if (std::filesystem::is_directory(status)) throw InputError(path, "is a folder; give a film, or a folder of stills");
   // What OpenCV and ffmpeg would print on a broken file is said by our own error.
   cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
+  setenv("OPENCV_FFMPEG_LOGLEVEL", "-8", 0);  // AV_LOG_QUIET
   bool opened = false;
   try {
     opened = capture_.open(path, cv::CAP_FFMPEG);

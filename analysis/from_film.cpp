@@ -111,6 +111,9 @@ ChargeMotion measure_film(const std::string& path, const FilmOptions& options, c
   const DrumPattern drum = learn_drum(survey.strips, known.mill.lifters.count, kNotGiven);
   Pass pass = detect_all(path, survey, look, drum, progress);
   motion.frames = static_cast<int>(pass.balls.size());
+  if (motion.frames < 0.98 * reader.frame_count() - 2)
+    motion.caveats.push_back(fmt::format("the film breaks off: {} of the {} frames that it announces could be read",
+                                         motion.frames, reader.frame_count()));
 
   motion.rotation = options.rotation;
   if (motion.rotation == Rotation::kUnknown && drum.found)
@@ -145,6 +148,9 @@ ChargeMotion measure_film(const std::string& path, const FilmOptions& options, c
 
   const Estimate turn = drum.found ? turn_per_frame(pass.angle) : Estimate{};
   const double sense = clockwise ? -1.0 : 1.0;
+  const double revolutions = std::abs(turn.value) * motion.frames / (2 * kPi);
+  if (revolutions < 1)
+    motion.caveats.push_back(fmt::format("the film shows {:.2f} revolutions: too short for averages", revolutions));
   motion.speed_rpm = {rpm_from_rad_s(sense * turn.value * fps), rpm_from_rad_s(turn.se * fps)};
   Mill mill = known.mill;
   if (std::isnan(mill.diameter)) mill.diameter = 2 * motion.mill_radius;
