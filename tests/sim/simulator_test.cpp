@@ -84,6 +84,26 @@ TEST(Simulator, TorqueSeriesAddsUpToTheDriveWork) {
   EXPECT_NEAR(work, seen.frames.back().observed.drive_work - seen.frames.front().observed.drive_work, 1e-9);
 }
 
+// Number times energy of the impacts is the power dissipated: bins, edges and rates belong together. Bins are a third
+// wide, and contacts that outlast the run are not counted.
+TEST(Simulator, ImpactSpectrumHoldsTheDissipation) {
+  const Seen seen = run(short_run());
+  const ImpactSpectrum& spectrum = seen.result.spectrum;
+  ASSERT_EQ(spectrum.edges_J.size(), spectrum.ball_ball.size() + 1);
+  const auto power = [&](const std::vector<double>& rates) {
+    double sum = 0;
+    for (std::size_t b = 0; b < rates.size(); ++b)
+      sum += rates[b] * std::sqrt(spectrum.edges_J[b] * spectrum.edges_J[b + 1]);
+    return sum;
+  };
+  const auto &first = seen.frames.front(), &last = seen.frames.back();
+  const auto dissipated = [&](std::size_t cause) {
+    return (last.observed.dissipation[cause] - first.observed.dissipation[cause]) / (last.time - first.time);
+  };
+  EXPECT_NEAR(power(spectrum.ball_ball) / (dissipated(0) + dissipated(1)), 1, 0.2);
+  EXPECT_NEAR(power(spectrum.ball_wall) / (dissipated(2) + dissipated(3)), 1, 0.2);
+}
+
 TEST(Simulator, SameSeedSameBitsForAnyNumberOfThreads) {
   limit_threads(1);
   const Seen one = run(short_run());
