@@ -23,7 +23,7 @@ void simulate(const Options& o) {
   const Config config = io::read_config(o.config, o.sets);
   check_complete(config);
   std::error_code error;
-  if (o.resume && fs::exists(o.output, error)) {
+  if (o.resume && (fs::exists(o.output, error) || io::adopt_complete_run(o.output, config))) {
     // Done is done, provided that it is this run.
     const io::RunReader run(o.output);
     if (io::to_toml(run.setup().config) != io::to_toml(config))
