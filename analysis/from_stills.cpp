@@ -8,6 +8,7 @@
 #include "analysis/charge_mask.h"
 #include "analysis/charge_motion.h"
 #include "analysis/charge_statistics.h"
+#include "analysis/still_view.h"
 #include "analysis/view.h"
 #include "core/error.h"
 #include "core/statistics.h"
@@ -42,6 +43,29 @@ std::vector<cv::Mat> read_stills(const std::string& folder) {
     stills.push_back(std::move(still));
   }
   return stills;
+}
+
+// The shell is the circle at which the charge ends; its edge in the picture has its own centre, since in a view that is
+// not quite along the axis the circles of a mill are not concentric.
+void place_shell(MillView& view, const FilmSurvey& survey, double reach, const Config& known) {
+  if (!(reach > 0)) return;
+  const double metres = view.mill.radius * view.metres_per_pixel;
+  view.mill = {survey.centre.u, survey.centre.v, reach};
+  double best = 0;
+  for (const RingEdge& ring : survey.rings) {
+    const double miss = std::abs(ring.circle.radius / reach - 1) / 0.03;
+    const double weight = ring.coverage * std::abs(ring.strength) * (1 - miss * miss);
+    if (miss > 1 || weight <= best) continue;
+    best = weight;
+    view.mill = ring.circle;
+  }
+  view.tip_radius = view.mill.radius;
+  if (!(known.mill.diameter > 0)) return;
+  view.metres_per_pixel = metres / view.mill.radius;
+  if (known.mill.lifters.height > 0) view.tip_radius -= known.mill.lifters.height / view.metres_per_pixel;
+  const auto sizes = known_radii(known);
+  if (sizes.size() == view.radii.size())
+    for (std::size_t c = 0; c < sizes.size(); ++c) view.radii[c] = sizes[c] / view.metres_per_pixel;
 }
 
 }  // namespace
@@ -82,16 +106,15 @@ ChargeMotion measure_stills(const std::string& folder, const FilmOptions& option
     std::erase_if(balls.back(), [&](const Detection& d) { return d.score < look.birth_score; });
     report(progress, 0.1 + 0.5 * static_cast<double>(balls.size()) / static_cast<double>(stills.size()));
   }
-  const MillView view = find_view(balls, look, survey, DrumPattern{}, known, motion.caveats);
+  MillView view = find_view(balls, look, survey, DrumPattern{}, known, motion.caveats);
+  place_shell(view, survey, charge_reach(charge_shares(stills, balls, survey.centre), survey.centre), known);
   motion.camera.centre_u_px = view.mill.u;
   motion.camera.centre_v_px = view.mill.v;
   motion.camera.radius_px = view.mill.radius;
   motion.camera.metres_per_pixel = view.metres_per_pixel;
   motion.camera.width_px = mean.cols;
   motion.camera.height_px = mean.rows;
-  motion.lifter_count = known.mill.lifters.count;
   motion.mill_radius = view.mill.radius * view.metres_per_pixel;
-  motion.tip_radius = view.tip_radius * view.metres_per_pixel;
 
   const double unit = std::isnan(view.metres_per_pixel) ? 1.0 : view.metres_per_pixel;
   double diameters = 0, count = 0;
@@ -109,6 +132,14 @@ ChargeMotion measure_stills(const std::string& folder, const FilmOptions& option
   const double diameter = diameters / count;  // [px]
 
   const auto shares = charge_shares(stills, balls, view.mill);
+  motion.lifter_count = known.mill.lifters.count;
+  const bool tips_known = known.mill.lifters.height > 0 && known.mill.diameter > 0;
+  if (!tips_known || motion.lifter_count < 1) {
+    const StillLifters seen = find_still_lifters(stills, shares, view.mill, motion.lifter_count);
+    motion.lifter_count = seen.count;
+    if (!tips_known && seen.count > 0) view.tip_radius = seen.tip_radius;
+  }
+  motion.tip_radius = view.tip_radius * view.metres_per_pixel;
   const Ring ring = edge_ring(view.tip_radius, diameter);
   const int passages = motion.lifter_count > 0 ? motion.lifter_count : kUsualLifters;
   const int width = 2 * (static_cast<int>(std::lround(360.0 / passages)) / 2) + 1;  // one lifter spacing
