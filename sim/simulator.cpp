@@ -187,10 +187,11 @@ RunResult result_of(const Config& config, const RunState& run) {
     say(fmt::format("{:.3g} averaged revolutions are too few to tell whether the mill is steady.", revolutions));
   else if (!s.steady)
     say(fmt::format(
-        "The averages drift: between the first and the second half torque by {:+.1f} and centre of mass by "
-        "{:+.1f} standard errors, {:+.1f} balls locked meanwhile; {}.",
+        "The averages drift: against the first half of the revolutions, the second half's torque lies {:+.1f} and its "
+        "centre of mass {:+.1f} standard errors off, and {:.0f} more balls are locked; {}.",
         s.torque_z, s.closure_z, s.locked_change,
-        config.run.spin_up_auto ? "take a larger run.revolutions" : "spin_up = \"auto\" waits until they are steady"));
+        config.run.spin_up_auto ? "average more revolutions (run.revolutions)"
+                                : "run.spin_up = \"auto\" waits until they are steady"));
   if (run.locked.count > 0 && speed_fraction(config.mill) < 1)
     say(fmt::format(
         "{} of {} balls are locked between the lifters and turn with the shell: an artefact of the plane slice "
