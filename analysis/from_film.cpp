@@ -127,14 +127,11 @@ ChargeMotion measure_film(const std::string& path, const FilmOptions& options, c
   // few percent only, and taken out before the second.
   std::vector<std::string> first_caveats;
   MillView view = find_view(pass.balls, look, survey, drum, known, first_caveats);
-  LifterLattice lifters;
-  for (int round = 0; round < 2; ++round) {
-    const double guess = lifter_phase(drum, survey.strips, lifter_rows(survey, view));
-    lifters = find_lifters(pass.balls, pass.angle, view, drum.lifter_count, guess);
-    for (std::size_t f = 0; f < pass.angle.size(); ++f)
-      std::erase_if(pass.balls[f], [&](const Detection& d) { return within_lifter(d, view, lifters, pass.angle[f]); });
-    if (round == 0) view = find_view(pass.balls, look, survey, drum, known, motion.caveats);
-  }
+  const double guess = lifter_phase(drum, survey.strips, lifter_rows(survey, view));
+  const LifterLattice lifters = find_lifters(pass.balls, pass.angle, view, drum.lifter_count, guess);
+  for (std::size_t f = 0; f < pass.angle.size(); ++f)
+    std::erase_if(pass.balls[f], [&](const Detection& d) { return within_lifter(d, view, lifters, pass.angle[f]); });
+  view = find_view(pass.balls, look, survey, drum, known, motion.caveats);
   motion.camera.centre_u_px = view.mill.u;
   motion.camera.centre_v_px = view.mill.v;
   motion.camera.radius_px = view.mill.radius;

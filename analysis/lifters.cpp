@@ -36,9 +36,10 @@ LifterLattice find_lifters(const std::vector<std::vector<Detection>>& balls, con
       folded.push_back({std::remainder(p.angle - drum_angle[f] - guess, spacing), r / p.rho});
     }
   if (folded.size() < 100) return lattice;
-  const double step = spacing / 160;
-  std::vector<int> intruders;  // balls in the flanks of a lifter supposed at each angle
-  for (int k = -48; k <= 48; ++k) {
+  constexpr int kPlaces = 160;  // supposed for a lifter, across one spacing
+  const double step = spacing / kPlaces;
+  std::vector<int> intruders;  // balls in the flanks of a lifter supposed at each place
+  for (int k = 0; k < kPlaces; ++k) {
     int n = 0;
     for (const Folded& b : folded) {
       const double aside = std::abs(std::remainder(b.angle - k * step, spacing)) / b.half_gap;
@@ -49,16 +50,24 @@ LifterLattice find_lifters(const std::vector<std::vector<Detection>>& balls, con
   const int least = *std::min_element(intruders.begin(), intruders.end());
   const int allowed = least + static_cast<int>(0.01 * static_cast<double>(folded.size())) + 1;
   if (least > static_cast<int>(0.05 * static_cast<double>(folded.size()))) return lattice;
-  int best_from = 0, best_length = 0;  // the longest run of nearly empty gaps: its middle is the lifter's
-  for (int i = 0, from = 0; i <= static_cast<int>(intruders.size()); ++i) {
-    if (i < static_cast<int>(intruders.size()) && intruders[static_cast<std::size_t>(i)] <= allowed) continue;
-    if (i - from > best_length) {
-      best_length = i - from;
-      best_from = from;
-    }
-    from = i + 1;
+  // Runs of nearly empty gaps. A lifter that was taken for a ball sits alone in the middle of one, else the run is
+  // long; so may be a run beside balls that are locked between the lifters, but further from the guess.
+  double best = 0;
+  const auto open = [&](int k) { return intruders[static_cast<std::size_t>((k + 2 * kPlaces) % kPlaces)] <= allowed; };
+  for (int k = -kPlaces / 2; k < kPlaces / 2; ++k) {
+    if (!open(k) || open(k - 1)) continue;
+    int end = k;
+    while (end < k + kPlaces && open(end)) ++end;
+    const double middle = std::remainder((k + 0.5 * (end - 1 - k)) * step, spacing);
+    double alone = 0;
+    for (const Folded& b : folded) alone += std::abs(std::remainder(b.angle - middle, spacing)) < 0.4 * b.half_gap;
+    const double off = middle / (0.12 * spacing);
+    const double worth = std::exp(-off * off) *
+                         (alone / static_cast<double>(folded.size()) + 0.5 * static_cast<double>(end - k) / kPlaces);
+    if (worth <= best) continue;
+    best = worth;
+    lattice.angle = guess + middle;
   }
-  lattice.angle = guess + (best_from + 0.5 * (best_length - 1) - 48) * step;
   return lattice;
 }
 
