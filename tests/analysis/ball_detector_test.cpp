@@ -62,7 +62,7 @@ TEST(BallDetector, TellsTwoKnownSizesApart) {
   std::vector<PaintedBall> balls;
   for (int k = 0; k < 9; ++k) {
     const double r = k % 2 == 0 ? 9.0 : 13.5;
-    balls.push_back({150.0 + 40 * (k % 3) + 0.37 * k, 130.0 + 42 * (k / 3) + 0.21 * k, r, 0.7 * k, {150, 150, 150}});
+    balls.push_back({140.0 + 40 * (k % 3) + 0.37 * k, 130.0 + 42 * (k / 3) + 0.21 * k, r, 0.7 * k, {150, 150, 150}});
   }
   const cv::Mat picture = paint(mill, balls, 8);
   const Circle bound{mill.u, mill.v, mill.radius};
@@ -83,7 +83,7 @@ TEST(BallDetector, SeesDarkBallsOnABrightGround) {
   mill.noise = 0;
   cv::Mat picture(mill.height, mill.width, CV_8UC3, cv::Scalar(200, 200, 200));
   std::vector<PaintedBall> balls;
-  for (int k = 0; k < 12; ++k) balls.push_back({150.0 + 45 * (k % 4), 120.0 + 45 * (k / 4), 10});
+  for (int k = 0; k < 12; ++k) balls.push_back({120.0 + 45 * (k % 4), 120.0 + 45 * (k / 4), 10});
   for (int v = 0; v < picture.rows; ++v)
     for (int u = 0; u < picture.cols; ++u)
       for (const PaintedBall& b : balls)

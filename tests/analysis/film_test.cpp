@@ -23,7 +23,7 @@ struct PaintedFilm {
   PaintedMill mill;
 };
 
-constexpr int kFrames = 40;
+constexpr int kFrames = 60;
 constexpr double kStep = 0.035;  // turn per frame [rad]
 constexpr double kRate = 50;     // frames/s
 
@@ -57,7 +57,7 @@ PaintedFilm paint_film(const std::string& name, bool clockwise) {
       here.push_back(b);
     }
     for (int k = 0; k < 3; ++k) {
-      const double t = f - 12 * k;
+      const double t = f - 20 * k;
       if (t < 0 || t > 26) continue;
       here.push_back({m.u + sense * (40 - 5.0 * t), m.v - (70 + 1.5 * t - 0.15 * t * t), r, 0.0});
     }

@@ -8,7 +8,7 @@
 #include "core/units.h"
 
 // Pictures of a mill painted point by point, sharing nothing with the renderer: shaded balls with highlights and
-// marks on a dull ground, square lifters, a rim with bolts, noise. Anti-aliased by 3 x 3 samples a pixel.
+// marks on a dull ground, square lifters, a rim with bolts, noise. Anti-aliased by 2 x 2 samples a pixel.
 namespace tumble::analysis {
 
 struct PaintedBall {
@@ -18,8 +18,8 @@ struct PaintedBall {
 };
 
 struct PaintedMill {
-  int width = 480, height = 360;
-  double u = 236.3, v = 180.8, radius = 150.6;  // the inner shell [px]
+  int width = 384, height = 368;
+  double u = 190.3, v = 182.8, radius = 150.6;  // the inner shell [px]
   int lifters = 12;
   double lifter_height = 11, lifter_width = 11;  // [px]
   double angle = 0;                              // of a lifter, counter-clockwise as seen [rad]
@@ -60,10 +60,10 @@ inline cv::Mat paint(const PaintedMill& m, const std::vector<PaintedBall>& balls
       for (const PaintedBall& b : balls)
         if (std::hypot(b.u - u, b.v - v) < b.radius + 1) near.push_back(b);
       cv::Vec3d sum(0, 0, 0);
-      for (int j = -1; j <= 1; ++j)
-        for (int i = -1; i <= 1; ++i) sum += painted_point(m, near, u + i / 3.0, v + j / 3.0) / 9.0;
-      double grain = -6;
-      for (int k = 0; k < 12; ++k) grain += random.uniform();
+      for (double j : {-0.25, 0.25})
+        for (double i : {-0.25, 0.25}) sum += painted_point(m, near, u + i, v + j) / 4.0;
+      double grain = 0;  // nearly normal, variance 1
+      for (int k = 0; k < 4; ++k) grain += std::sqrt(3.0) * (random.uniform() - 0.5);
       auto& pixel = picture.at<cv::Vec3b>(v, u);
       for (int c = 0; c < 3; ++c) pixel[c] = cv::saturate_cast<uchar>(sum[c] + m.noise * grain);
     }
