@@ -28,8 +28,12 @@ void check_writable(const fs::path& folder, const fs::path& output) {
 
 void check_output_file(const fs::path& path, bool force) {
   std::error_code error;
-  if (path.empty() || !path.has_filename()) throw InputError(path.string(), "names a folder; give a file");
+  if (path.empty()) throw InputError("output", "has an empty name; give a file");
+  if (!path.has_filename()) throw InputError(path.string(), "names a folder; give a file");
   if (fs::is_directory(path, error)) throw InputError(path.string(), "is a folder; give a file");
+  // Outputs are renamed into place: even with `force` that must not put a file where /dev/null was.
+  if (fs::exists(path, error) && !fs::is_regular_file(path, error))
+    throw InputError(path.string(), "is a device or a pipe; give a file");
   check_writable(parent_of(path), path);
   if (fs::exists(fs::symlink_status(path, error)) && !force)
     throw InputError(path.string(), "exists; remove it or add --force to replace it");
@@ -37,6 +41,7 @@ void check_output_file(const fs::path& path, bool force) {
 
 void make_output_folder(const fs::path& path) {
   std::error_code error;
+  if (path.empty()) throw InputError("output", "has an empty name; give a folder");
   const fs::path folder = path.has_filename() ? path : path.parent_path();
   if (fs::exists(folder, error) && !fs::is_directory(folder, error))
     throw InputError(path.string(), "is a file; give a folder");

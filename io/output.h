@@ -6,7 +6,7 @@
 namespace tumble::io {
 
 // Throws InputError where `path` cannot become an output: the parent folder does not exist or is not writable, it is
-// itself a folder, or it exists and `force` is false.
+// itself a folder, a device or a pipe, or it exists and `force` is false.
 void check_output_file(const std::filesystem::path& path, bool force);
 
 // Makes the folder if it is not there (its parent must exist); throws InputError where it cannot be written to.
