@@ -96,7 +96,7 @@ MillView find_view(const std::vector<std::vector<Detection>>& balls, const BallL
     for (std::size_t c = 0; c < classes; ++c) view.radii[c] = sizes[c] / view.metres_per_pixel;
 
   view.tip_radius = view.mill.radius;
-  if (known.mill.lifters.profile == LifterProfile::kNone && known.mill.lifters.count > 0) return view;
+  if (known.mill.lifters.profile == LifterProfile::kNone && known.origin.contains("mill.lifters.profile")) return view;
   if (known.mill.lifters.height > 0 && mill_radius > 0) {
     view.tip_radius = view.mill.radius * (1 - known.mill.lifters.height / mill_radius);
   } else if (drum.lifter_count > 0) {
