@@ -116,8 +116,13 @@ ChargeMotion measure_film(const std::string& path, const FilmOptions& options, c
                                          motion.frames, reader.frame_count()));
 
   motion.rotation = options.rotation;
-  if (motion.rotation == Rotation::kUnknown && drum.found)
-    motion.rotation = drum.step > 0 ? Rotation::kCounterClockwise : Rotation::kClockwise;
+  const Rotation seen = drum.step > 0 ? Rotation::kCounterClockwise : Rotation::kClockwise;
+  if (motion.rotation == Rotation::kUnknown && drum.found) motion.rotation = seen;
+  if (drum.found && motion.rotation != seen)
+    motion.caveats.push_back(
+        "the drum is seen to turn against the rotation that was given: speed is negative, toe and shoulder are not to "
+        "be "
+        "trusted; leave --rotation at auto");
   const bool clockwise = motion.rotation == Rotation::kClockwise;
   if (!drum.found) motion.caveats.push_back("nothing that turns with the drum was made out: speed unknown");
   if (motion.rotation == Rotation::kUnknown)
