@@ -30,6 +30,8 @@ void analyse(Options o) {
   o.film.mill = mill ? &*mill : nullptr;
   if (!std::isnan(o.film.recorded_fps) && !(o.film.recorded_fps > 0))
     throw InputError("--recorded-fps", "must be a positive number of frames per second");
+  io::check_not_input(o.output, o.input);
+  if (mill) io::check_not_input(o.output, o.mill);
   io::check_output_file(o.output, o.force);
   if (!o.csv.empty()) io::make_output_folder(o.csv);
 

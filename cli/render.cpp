@@ -62,6 +62,7 @@ void render(Options o) {
   else {
     if (o.output.extension() != ".mp4")
       throw InputError(o.output.string(), "is no .mp4; give FILM.mp4, or FRAMES/ for a folder of PNG");
+    io::check_not_input(o.output, o.run);
     io::check_output_file(o.output, o.force);
   }
   const io::RunReader run(o.run);

@@ -22,6 +22,9 @@ void simulate(const Options& o) {
   limit_threads(o.threads);
   const Config config = io::read_config(o.config, o.sets);
   check_complete(config);
+  io::check_not_input(o.output, o.config);
+  if (o.output.extension() == ".xdmf")
+    throw InputError(o.output.string(), "is the name of the run's side-car for ParaView; give RUN.h5");
   std::error_code error;
   if (o.resume && (fs::exists(o.output, error) || io::adopt_complete_run(o.output, config))) {
     // Done is done, provided that it is this run.

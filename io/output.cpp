@@ -39,6 +39,12 @@ void check_output_file(const fs::path& path, bool force) {
     throw InputError(path.string(), "exists; remove it or add --force to replace it");
 }
 
+void check_not_input(const fs::path& output, const fs::path& input) {
+  std::error_code error;
+  if (fs::equivalent(output, input, error) && !error)
+    throw InputError(output.string(), "is the input itself; give another output");
+}
+
 void make_output_folder(const fs::path& path) {
   std::error_code error;
   if (path.empty()) throw InputError("output", "has an empty name; give a folder");

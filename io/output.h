@@ -9,6 +9,9 @@ namespace tumble::io {
 // itself a folder, a device or a pipe, or it exists and `force` is false.
 void check_output_file(const std::filesystem::path& path, bool force);
 
+// Throws InputError where the output is the very file that is read: even by force that would destroy it.
+void check_not_input(const std::filesystem::path& output, const std::filesystem::path& input);
+
 // Makes the folder if it is not there (its parent must exist); throws InputError where it cannot be written to.
 void make_output_folder(const std::filesystem::path& path);
 

@@ -2,6 +2,7 @@
 #include <unistd.h>
 
 #include <cmath>
+#include <cstdio>
 
 #include "core/error.h"
 #include "core/version.h"
@@ -233,6 +234,20 @@ void put_in_place(const fs::path& part, const fs::path& path) {
   sync_folder(path);
 }
 
+// Beforehand: HDF5 would write for hours before it found the disk full.
+void check_space(const fs::path& path, const RunSetup& setup, std::size_t checkpoint_words) {
+  double per_frame = 8.0 * double(2 + all_series().size() + setup.dissipation_causes.size());
+  for (const BallArray& b : all_ball_arrays()) per_frame += double(sizeof(float) * b.components() * setup.balls.size());
+  const double needed = per_frame * double(setup.frame_count) + 16.0 * double(checkpoint_words);
+  std::error_code error;
+  const auto space = fs::space(path.has_parent_path() ? path.parent_path() : fs::path("."), error);
+  if (error || needed <= double(space.available)) return;
+  char text[160];
+  std::snprintf(text, sizeof text, "needs %.3g GB for %lld frames, %.3g GB are free; take fewer revolutions or frames",
+                needed / 1e9, static_cast<long long>(setup.frame_count), double(space.available) / 1e9);
+  throw WorkError(path.string(), text);
+}
+
 }  // namespace
 
 struct RunWriter::Impl {
@@ -339,6 +354,7 @@ RunWriter::RunWriter(const fs::path& path, const RunSetup& setup, std::size_t ch
   impl_->path = path;
   impl_->part = part_of(path);
   impl_->setup = setup;
+  check_space(path, setup, checkpoint_words);
   // Laid out under a third name: a .part is whole from the moment it is there.
   fs::path layout = impl_->part;
   layout += ".new";

@@ -27,6 +27,14 @@ TEST_F(Output, NeverReplacesADeviceOrPipe) {
     for (const bool force : {false, true}) EXPECT_THROW(check_output_file(path, force), InputError);
 }
 
+TEST_F(Output, IsNotTheInput) {
+  const auto run = folder_ / "run.h5", link = folder_ / "link.h5";
+  write_bytes(run, "frames");
+  std::filesystem::create_symlink(run, link);
+  EXPECT_THROW(check_not_input(run, link), InputError);
+  EXPECT_NO_THROW(check_not_input(folder_ / "motion.h5", run));
+}
+
 TEST_F(Output, NeedsANameAndAFolder) {
   EXPECT_THROW(check_output_file("", true), InputError);
   EXPECT_THROW(check_output_file(folder_, true), InputError);
