@@ -36,7 +36,8 @@ void CellGrid::fill(const Charge& charge, double cell) {
 void CellGrid::partners_of(const Charge& charge, int i, double skin, std::vector<int>& out) const {
   out.clear();
   const double x = charge.x[i], y = charge.y[i], r = charge.radius[i] + skin;
-  const int c = column(x), w = row(y);
+  // A ball that was moved since the cells were filled may have left them all (packing does that within a sweep).
+  const int c = std::clamp(column(x), 0, columns_ - 1), w = std::clamp(row(y), 0, rows_ - 1);
   for (int v = std::max(0, w - 1); v <= std::min(rows_ - 1, w + 1); ++v) {
     // Neighbouring cells of a row lie side by side in balls_.
     const int from = start_[v * columns_ + std::max(0, c - 1)];

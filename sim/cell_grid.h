@@ -12,7 +12,7 @@ class CellGrid {
   void fill(const Charge& charge, double cell);
 
   // Balls j > i with |x_j - x_i| < r_i + r_j + skin, ascending, into `out` (cleared first).
-  // The cell must have been at least 2 r_max + skin.
+  // The cell must have been at least 2 r_max + skin. All of them are found only where no ball has moved since fill().
   void partners_of(const Charge& charge, int i, double skin, std::vector<int>& out) const;
 
  private:

@@ -14,6 +14,7 @@ namespace {
 // Steps per shortest impact that the automatic time step gives: 20 keep the restitution within 0.008 for any phase of
 // an impact within a step, and within 0.003 in the mean (tests/physics/restitution_test.cpp).
 constexpr double kStepsPerContact = 20;
+constexpr double kMostStepsPerFrame = 1e9;  // more would take weeks; it is a slip of the pen
 
 LinearSpringDashpot law_of(const Contact& contact) {
   return {contact.normal_stiffness, contact.tangential_stiffness, contact.friction, contact.restitution};
@@ -60,9 +61,14 @@ MillModel make_mill_model(const Config& config) {
         fmt::format("{:g} s is not stable for these balls and springs; at most {:.3g} s, or \"auto\"", step, limit));
   }
   // Frames come at even times: the step is made to divide their interval, never longer than asked for.
-  const double frames = 1 / config.run.frames_per_second;
-  model.steps_per_frame = std::max(1, static_cast<int>(std::ceil(frames / step * (1 - 1e-9))));
-  model.time_step = frames / model.steps_per_frame;
+  const double interval = 1 / config.run.frames_per_second;
+  const double steps = std::ceil(interval / step * (1 - 1e-9));
+  if (!(steps <= kMostStepsPerFrame))
+    throw InputError(place_of(config, "run.time_step"),
+                     fmt::format("{:g} s makes {:.2g} steps from frame to frame; at most {:.0g}, or \"auto\"", step,
+                                 steps, kMostStepsPerFrame));
+  model.steps_per_frame = std::max(1, static_cast<int>(steps));
+  model.time_step = interval / model.steps_per_frame;
   return model;
 }
 

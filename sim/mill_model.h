@@ -1,4 +1,6 @@
 #pragma once
+#include <cstdint>
+
 #include "core/config.h"
 #include "core/mill_shape.h"
 #include "sim/laws/linear_spring_dashpot.h"

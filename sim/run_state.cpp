@@ -132,8 +132,15 @@ void restore(RunState& run, const std::vector<double>& words) {
   const std::size_t balls = run.mill.charge.size();
   Reader reader{words};
   visit(reader, run);
-  if (run.mill.charge.x.size() != balls || run.mill.charge.alpha.size() != balls)
-    throw InputError("checkpoint", "holds another number of balls than the config; start afresh");
+  const Charge& c = run.mill.charge;
+  for (const auto* v : {&c.x, &c.y, &c.angle, &c.vx, &c.vy, &c.spin, &c.ax, &c.ay, &c.alpha})
+    if (v->size() != balls)
+      throw InputError("checkpoint", "holds another number of balls than the config; start afresh");
+  const History& h = run.history;
+  if (h.closure.size() != h.size() || h.locked.size() != h.size() ||
+      run.locked.since.size() != run.locked.home.size() || run.sampled_before < 0 ||
+      static_cast<std::size_t>(run.sampled_before) > h.size())
+    throw InputError("checkpoint", "is damaged; start afresh");
   read_touching(reader, run.mill.ball_contacts, static_cast<std::int64_t>(balls));
   read_touching(reader, run.mill.wall_contacts, static_cast<std::int64_t>(balls));
   run.mill.stale = true;

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/units.h"
+
 namespace tumble::sim {
 
 Shell make_shell(const MillShape& shape) {
@@ -79,7 +81,7 @@ void features_near(const Shell& shell, double mill_angle, double x, double y, do
   // Only lifters whose bounding circle can be in reach: |angle| <= asin(span / rho).
   const int n = shell.lifter_count;
   const double span = reach + shell.lifter_reach;
-  const double pitch = 2 * 3.14159265358979323846 / n;
+  const double pitch = 2 * kPi / n;
   const int each_side = span < rho ? static_cast<int>(std::asin(span / rho) / pitch) + 1 : n;
   if (2 * each_side + 1 >= n) {
     for (int k = 0; k < n; ++k) add_if_near(k);

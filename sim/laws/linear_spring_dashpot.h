@@ -1,6 +1,8 @@
 #pragma once
 #include <cmath>
 
+#include "core/units.h"
+
 // Linear spring and dashpot with Coulomb friction (Mishra & Rajamani 1992, fig. 1 and eqs 1, 13, 14; tangential spring
 // with history after Cundall & Strack 1979).
 //
@@ -30,7 +32,7 @@ struct LinearSpringDashpot {
 // Share of critical damping: e = exp(-pi z / sqrt(1 - z^2)).
 inline double damping_ratio(double restitution) {
   const double l = std::log(restitution);
-  return -l / std::sqrt(l * l + 3.14159265358979323846 * 3.14159265358979323846);
+  return -l / std::sqrt(l * l + kPi * kPi);
 }
 
 // C [N s/m] of eq. 13, less what the time step adds to it. Central differences with the velocity foreseen from the last

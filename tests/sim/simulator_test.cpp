@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <thread>
 
@@ -142,11 +143,13 @@ TEST(Simulator, ResumedRunGoesOnWithTheSameBits) {
     };
     sink.checkpoint = [&](const Checkpoint& c) { checkpoints.push_back(c); };
     simulate(config, sink);
-    ASSERT_EQ(checkpoints.size(), 1u);
-    EXPECT_EQ(checkpoints[0].frames_written, wait_at);
-    EXPECT_LE(checkpoints[0].words.size(), checkpoint_capacity(config));
+    // A slow machine may give more of them.
+    const auto at = std::find_if(checkpoints.begin(), checkpoints.end(),
+                                 [&](const Checkpoint& c) { return c.frames_written == wait_at; });
+    ASSERT_NE(at, checkpoints.end());
+    EXPECT_LE(at->words.size(), checkpoint_capacity(config));
 
-    const Seen rest = run(config, &checkpoints[0]);
+    const Seen rest = run(config, &*at);
     ASSERT_EQ(rest.frames.size(), whole.frames.size() - std::size_t(wait_at));
     expect_same_bits(rest.frames.front(), whole.frames[std::size_t(wait_at)]);
     expect_same_bits(rest.frames.back(), whole.frames.back());
@@ -164,6 +167,12 @@ TEST(Simulator, RefusesATimeStepThatIsNotStable) {
   EXPECT_THAT(message, HasSubstr("mill.toml:30: run.time_step"));
   EXPECT_THAT(message, HasSubstr("0.001"));
   EXPECT_THAT(message, HasSubstr("at most"));
+}
+
+TEST(Simulator, RefusesATimeStepThatWouldNeverEnd) {
+  Config config = short_run();
+  config.run.time_step = 1e-300;
+  EXPECT_THAT(message_of(config), HasSubstr("run.time_step: 1e-300 s makes"));
 }
 
 // The step that the paper prints is allowed, and energy still balances there: the limit is on the safe side.
