@@ -45,8 +45,9 @@ void check_mill(const Checker& c, const Mill& m) {
   c.positive("mill.diameter", m.diameter, "m");
   c.positive("mill.length", m.length, "m");
   c.range("mill.speed", m.speed, 0, 5, "of critical speed (for rev/min use mill.speed_rpm)");
-  c.not_negative("mill.speed_rpm", m.speed_rpm, "rev/min");
   c.positive("mill.critical_speed_rpm", m.critical_speed_rpm, "rev/min");
+  c.not_negative("mill.speed_rpm", m.speed_rpm, "rev/min");
+  c.range("mill.speed_rpm", m.speed_rpm, 0, 5 * critical_speed_rpm(m), "rev/min (5 times critical)");
   if (!std::isnan(m.speed) && !std::isnan(m.speed_rpm))
     c.fail("mill.speed_rpm", "excludes mill.speed; keep one of the two");
   if (m.slices && *m.slices < 1) c.fail("mill.slices", "is " + std::to_string(*m.slices) + ", must be 1 or more");
@@ -117,11 +118,16 @@ void check_charge(const Checker& c, const Config& config) {
                                  " m inside the lifters; radius and diameter are in metres");
   }
   if (charge.balls.empty() || std::isnan(config.mill.diameter)) return;
+  if (std::any_of(charge.balls.begin(), charge.balls.end(), [](const BallClass& b) { return std::isnan(b.radius); }))
+    return;  // nothing to add up yet
   if (!charge.count && std::isnan(charge.filling)) return;
-  const double filling = filling_of(config, class_counts(config));
-  if (filling > 0.85)
-    c.fail("charge.count", std::to_string(charge.count.value_or(0)) + " balls fill " + number(filling) +
-                               " of the mill, must be at most 0.8; use fewer or smaller balls");
+  const std::vector<int> counts = class_counts(config);
+  const double filling = filling_of(config, counts);
+  // A whole number of balls may overshoot the filling that was asked for; a count has no such excuse.
+  if (filling > (charge.count ? 0.8 : 0.85))
+    c.fail(charge.count ? "charge.count" : "charge.filling",
+           std::to_string(std::accumulate(counts.begin(), counts.end(), 0)) + " balls fill " + number(filling) +
+               " of the mill, must be at most 0.8; use fewer or smaller balls");
 }
 
 void check_contact(const Checker& c, const Contact& k) {
@@ -138,7 +144,8 @@ void check_contact(const Checker& c, const Contact& k) {
 void check_run(const Checker& c, const RunPlan& run) {
   c.range("run.spin_up", run.spin_up, 0, 1e6, "revolutions");
   c.positive("run.revolutions", run.revolutions, "revolutions");
-  c.positive("run.frames_per_second", run.frames_per_second, "frames per simulated second");
+  c.range("run.revolutions", run.revolutions, 0, 1e6, "revolutions");
+  c.range("run.frames_per_second", run.frames_per_second, 0.01, 1e6, "frames per simulated second");
   c.positive("run.time_step", run.time_step, "s");
 }
 

@@ -62,12 +62,19 @@ TEST(Config, RefusesWhatCannotBeAMillAndNamesTheKey) {
   EXPECT_THAT(broken([](Config& c) { c.mill.diameter = kNotGiven; }), HasSubstr("mill.diameter: is missing"));
   EXPECT_THAT(broken([](Config& c) { c.mill.speed_rpm = 40; }), HasSubstr("excludes mill.speed"));
   EXPECT_THAT(broken([](Config& c) { c.mill.speed = 70; }), HasSubstr("mill.speed_rpm"));  // per cent, or rev/min
+  EXPECT_THAT(broken([](Config& c) {
+                c.mill.speed = kNotGiven;
+                c.mill.speed_rpm = 1e6;
+              }),
+              HasSubstr("mill.speed_rpm: is 1e+06"));
+  EXPECT_THAT(broken([](Config& c) { c.run.revolutions = 1e9; }), HasSubstr("run.revolutions"));
+  EXPECT_THAT(broken([](Config& c) { c.run.frames_per_second = 1e-9; }), HasSubstr("run.frames_per_second"));
   EXPECT_THAT(broken([](Config& c) { c.mill.lifters.count = 90; }), HasSubstr("overlap"));
   EXPECT_THAT(broken([](Config& c) { c.mill.lifters.height = 0.3; }), HasSubstr("axis"));
   EXPECT_THAT(broken([](Config& c) { c.charge.balls[0].radius = 12; }), HasSubstr("does not fit"));
   EXPECT_THAT(broken([](Config& c) { c.charge.balls.clear(); }), HasSubstr("charge.balls: is missing"));
   EXPECT_THAT(broken([](Config& c) { c.charge.filling = 0.3; }), HasSubstr("excludes charge.filling"));
-  EXPECT_THAT(broken([](Config& c) { c.charge.count = 400; }), HasSubstr("charge.count"));
+  EXPECT_THAT(broken([](Config& c) { c.charge.count = 400; }), HasSubstr("charge.count: 400 balls fill 1.4"));
   EXPECT_THAT(broken([](Config& c) {
                 c.charge.count.reset();
                 c.charge.filling = 0.95;
@@ -76,6 +83,15 @@ TEST(Config, RefusesWhatCannotBeAMillAndNamesTheKey) {
   EXPECT_THAT(broken([](Config& c) { c.contact.restitution = 1.2; }), HasSubstr("contact.restitution"));
   EXPECT_THAT(broken([](Config& c) { c.origin["contact.friction"] = "my.toml:7", c.contact.friction = -1; }),
               HasSubstr("my.toml:7: contact.friction"));
+}
+
+// A partial file for the analyser may know the filling and not yet the balls.
+TEST(Config, AcceptsAFillingOfBallsWithoutARadius) {
+  Config config = paper_mill();
+  config.charge.count.reset();
+  config.charge.filling = 0.3;
+  config.charge.balls = {BallClass{}};
+  EXPECT_NO_THROW(check(config));
 }
 
 TEST(Config, WallTakesTheBallsValuesUnlessItHasItsOwn) {
