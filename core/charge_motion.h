@@ -13,6 +13,30 @@ namespace tumble {
 enum class Rotation { kUnknown, kCounterClockwise, kClockwise };  // as seen by the camera, before mirroring
 enum class MotionSource { kRunFile, kFilm, kStills };
 
+inline const char* name_of(Rotation rotation) {
+  switch (rotation) {
+    case Rotation::kCounterClockwise:
+      return "counter_clockwise";
+    case Rotation::kClockwise:
+      return "clockwise";
+    case Rotation::kUnknown:
+      break;
+  }
+  return "unknown";
+}
+
+inline const char* name_of(MotionSource source) {
+  switch (source) {
+    case MotionSource::kRunFile:
+      return "run_file";
+    case MotionSource::kFilm:
+      return "film";
+    case MotionSource::kStills:
+      break;
+  }
+  return "stills";
+}
+
 struct ProfileRow {  // one frame
   int frame = 0;     // of the file, 0-based
   double time = 0;   // [s]

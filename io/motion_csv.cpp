@@ -7,8 +7,9 @@
 #include <nlohmann/json.hpp>
 
 #include "core/error.h"
+#include "core/motion_quantities.h"
+#include "io/json_number.h"
 #include "io/motion_file.h"
-#include "io/motion_quantities.h"
 #include "io/output.h"
 
 namespace tumble::io {
@@ -17,12 +18,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// As many digits as can mean something: 9 of a value, 4 of an error; null where it cannot be had.
-Json number(double v, int digits = 9) {
-  if (!std::isfinite(v)) return nullptr;
-  return std::stod(fmt::format("{:.{}g}", v, digits));
-}
-Json error(double v) { return number(v, 4); }
+Json number(double v) { return json_number(v, 9); }
+Json error(double v) { return json_number(v, 4); }
 Json pair(const Json& x, const Json& y) { return x.is_null() && y.is_null() ? Json(nullptr) : Json{x, y}; }
 
 void put(Json& summary, const std::string& name, double value, double se = kNotGiven) {
@@ -117,7 +114,7 @@ std::string summary_json(const ChargeMotion& m) {
   s["source"] = name_of(m.source);
   s["origin"] = m.origin;
   s["rotation"] = m.rotation == Rotation::kUnknown ? Json(nullptr) : Json(name_of(m.rotation));
-  for (const Quantity& q : kQuantities) {
+  for (const MotionQuantity& q : kMotionQuantities) {
     const std::string name = q.name;
     if (name == "centre_of_circulation_y_m") continue;
     if (name == "centre_of_circulation_x_m") {

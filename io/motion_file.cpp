@@ -5,9 +5,9 @@
 #include <utility>
 
 #include "core/error.h"
+#include "core/motion_quantities.h"
 #include "core/version.h"
 #include "io/hdf5.h"
-#include "io/motion_quantities.h"
 #include "io/output.h"
 
 namespace tumble::io {
@@ -42,7 +42,7 @@ void walk(Io& io, Motion& m) {
   io.scalar("frames/per_second", "s-1", m.frames_per_second);
   io.array("frames/duplicated", "", m.duplicated_frames);
   io.array("frames/dropped", "", m.dropped_frames);
-  for (const Quantity& q : kQuantities) io.estimate(std::string("summary/") + q.name, q.unit, m.*q.of);
+  for (const MotionQuantity& q : kMotionQuantities) io.estimate(std::string("summary/") + q.name, q.unit, m.*q.of);
 
   io.scalar("camera/centre_u", "px", m.camera.centre_u_px);
   io.scalar("camera/centre_v", "px", m.camera.centre_v_px);

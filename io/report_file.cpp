@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cerrno>
 #include <cmath>
 #include <cstring>
@@ -14,6 +15,7 @@
 #include "core/angle.h"
 #include "core/error.h"
 #include "core/mill_shape.h"
+#include "io/json_number.h"
 #include "io/output.h"
 #include "io/report/embedded.h"
 #include "io/report/html.h"
@@ -225,7 +227,7 @@ constexpr const char* kSpectrumFigure =
     "per second and bin.</figcaption></figure>";
 
 // Seven digits are more than a plot can show.
-Json plotted(double v) { return std::isfinite(v) ? Json(std::stod(fmt::format("{:.7g}", v))) : Json(nullptr); }
+Json plotted(double v) { return json_number(v, 7); }
 
 template <typename Rows, typename Get>
 Json column(const Rows& rows, Get get) {

@@ -7,8 +7,8 @@
 #include <sstream>
 
 #include "core/error.h"
+#include "core/motion_quantities.h"
 #include "io/hdf5.h"
-#include "io/motion_quantities.h"
 #include "tests/io/folder.h"
 
 namespace tumble::io {
@@ -32,7 +32,7 @@ ChargeMotion a_motion(MotionSource source) {
   m.frames_per_second = v();
   m.duplicated_frames = {2, 5};
   m.dropped_frames = {7};
-  for (const Quantity& q : kQuantities) m.*q.of = {v(), v()};
+  for (const MotionQuantity& q : kMotionQuantities) m.*q.of = {v(), v()};
   m.departure_deg = {};
   m.filling.se = kNotGiven;
   m.camera = {v(), v(), v(), v(), {v(), v()}, 1280, 720};
@@ -59,7 +59,7 @@ std::vector<std::uint64_t> numbers_of(const ChargeMotion& m) {
        {m.mill_radius, m.tip_radius, m.frames_per_second, m.camera.centre_u_px, m.camera.centre_v_px,
         m.camera.radius_px, m.camera.metres_per_pixel, m.camera.roll_deg.value, m.camera.roll_deg.se, m.field.cell})
     add(x);
-  for (const Quantity& q : kQuantities) add((m.*q.of).value), add((m.*q.of).se);
+  for (const MotionQuantity& q : kMotionQuantities) add((m.*q.of).value), add((m.*q.of).se);
   for (double o : m.ring_occupancy) add(o);
   for (const auto& r : m.profile)
     for (double x : {double(r.frame), r.time, r.mill_angle_deg, r.toe_deg, r.shoulder_deg, r.head}) add(x);
@@ -157,6 +157,12 @@ TEST_F(MotionFile, SummarySurvivesANameThatIsNoText) {
   ChargeMotion m;
   m.origin = "film\xff\xfe.mp4";
   EXPECT_NO_THROW(nlohmann::json::parse(summary_json(m)));
+}
+
+TEST_F(MotionFile, SummaryTellsEvenTheTiniestNumber) {
+  ChargeMotion m;
+  m.head = {1e-310, kNotGiven};
+  EXPECT_GT(nlohmann::json::parse(summary_json(m))["head_m"].get<double>(), 0);
 }
 
 std::vector<std::string> lines_of(const std::string& text) {

@@ -1,0 +1,37 @@
+#pragma once
+#include <array>
+
+#include "core/charge_motion.h"
+
+// The quantities of a charge motion that are one number with an error: one row serves MOTION.h5, summary.json and the
+// comparison of two motions.
+namespace tumble {
+
+struct MotionQuantity {
+  const char* name;           // as in summary.json
+  const char* unit;           // as in files: UDUNITS, "" for a pure number
+  const char* unit_in_words;  // as a reader has it
+  Estimate ChargeMotion::*of;
+  bool is_direction = false;  // in degrees: differences are taken round the circle
+};
+
+inline constexpr std::array kMotionQuantities{
+    MotionQuantity{"speed_rpm", "min-1", "rev/min", &ChargeMotion::speed_rpm},
+    MotionQuantity{"speed_fraction", "", "of critical", &ChargeMotion::speed_fraction},
+    MotionQuantity{"filling", "", "", &ChargeMotion::filling},
+    MotionQuantity{"toe_deg", "deg", "deg", &ChargeMotion::toe_deg, true},
+    MotionQuantity{"shoulder_deg", "deg", "deg", &ChargeMotion::shoulder_deg, true},
+    MotionQuantity{"toe_bulk_deg", "deg", "deg", &ChargeMotion::toe_bulk_deg, true},
+    MotionQuantity{"shoulder_bulk_deg", "deg", "deg", &ChargeMotion::shoulder_bulk_deg, true},
+    MotionQuantity{"toe_outer_deg", "deg", "deg", &ChargeMotion::toe_outer_deg, true},
+    MotionQuantity{"shoulder_outer_deg", "deg", "deg", &ChargeMotion::shoulder_outer_deg, true},
+    MotionQuantity{"head_m", "m", "m", &ChargeMotion::head},
+    MotionQuantity{"centre_of_circulation_x_m", "m", "m", &ChargeMotion::centre_of_circulation_x},
+    MotionQuantity{"centre_of_circulation_y_m", "m", "m", &ChargeMotion::centre_of_circulation_y},
+    MotionQuantity{"departure_deg", "deg", "deg", &ChargeMotion::departure_deg, true},
+    MotionQuantity{"impact_toe_deg", "deg", "deg", &ChargeMotion::impact_toe_deg, true},
+    MotionQuantity{"torque_N_m", "N m", "N m", &ChargeMotion::torque},
+    MotionQuantity{"torque_closure_N_m", "N m", "N m", &ChargeMotion::torque_closure},
+};
+
+}  // namespace tumble
