@@ -22,9 +22,8 @@ RunSummary summarise(const io::RunReader& run) {
   const std::size_t n = run.frame_count();
   if (n == 0) return s;
   std::vector<double> torque, closure, power;
-  // The first frame's means may reach back into the spin-up.
-  for (std::size_t i = n > 1 ? 1 : 0; i < n; ++i) {
-    const Observables o = run.frame(i).observed;
+  for (std::size_t i = 0; i < n; ++i) {
+    const Observables o = run.observables(i);
     torque.push_back(o.torque);
     closure.push_back(o.torque_closure);
     power.push_back(o.power);
@@ -34,7 +33,7 @@ RunSummary summarise(const io::RunReader& run) {
   s.power = mean_of_series(power);
   s.slices = slice_count(run.setup().config);
   s.mill_power = {s.power.value * s.slices, s.power.se * s.slices};
-  const Observables first = run.frame(0).observed, last = run.frame(n - 1).observed;
+  const Observables first = run.observables(0), last = run.observables(n - 1);
   const double work = last.drive_work - first.drive_work;
   s.energy_error = (work - (energy(last) - energy(first)) - (lost(last) - lost(first))) / work;
   s.locked_balls = last.locked_balls;

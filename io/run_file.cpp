@@ -97,6 +97,18 @@ struct RunReader::Impl {
     result.spectrum = {spectrum("edges"), spectrum("ball_ball"), spectrum("ball_wall")};
   }
 
+  Frame without_balls(std::size_t index) const {
+    if (index >= frames)
+      throw InputError(path.string(), "has no frame " + std::to_string(index) + ", its frames are 0 to " +
+                                          std::to_string(frames) + " - 1");
+    Frame frame;
+    frame.step = step[index];
+    frame.time = time[index];
+    for (std::size_t i = 0; i < series.size(); ++i) all_series()[i].of(frame) = series[i][index];
+    for (const auto& values : dissipation) frame.observed.dissipation.push_back(values[index]);
+    return frame;
+  }
+
   void read_balls(std::size_t index, const BallArray& array, hid_t set, Frame& frame) const {
     const hsize_t n = setup.balls.size(), parts = array.components();
     std::vector<double> row(n * parts);
@@ -139,14 +151,7 @@ RunReader::RunReader(RunReader&&) noexcept = default;
 
 Frame RunReader::frame(std::size_t index) const {
   const Impl& r = *impl_;
-  if (index >= r.frames)
-    throw InputError(r.path.string(), "has no frame " + std::to_string(index) + ", its frames are 0 to " +
-                                          std::to_string(r.frames) + " - 1");
-  Frame frame;
-  frame.step = r.step[index];
-  frame.time = r.time[index];
-  for (std::size_t i = 0; i < r.series.size(); ++i) all_series()[i].of(frame) = r.series[i][index];
-  for (const auto& values : r.dissipation) frame.observed.dissipation.push_back(values[index]);
+  Frame frame = r.without_balls(index);
   const auto held = hdf5::lock();
   try {
     for (std::size_t i = 0; i < r.balls.size(); ++i) r.read_balls(index, all_ball_arrays()[i], r.balls[i], frame);
@@ -155,6 +160,8 @@ Frame RunReader::frame(std::size_t index) const {
   }
   return frame;
 }
+
+Observables RunReader::observables(std::size_t index) const { return impl_->without_balls(index).observed; }
 
 const RunSetup& RunReader::setup() const { return impl_->setup; }
 std::size_t RunReader::frame_count() const { return impl_->frames; }

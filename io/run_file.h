@@ -48,9 +48,10 @@ class RunReader {
   const RunSetup& setup() const;
   std::size_t frame_count() const;  // whole frames in the file
   Frame frame(std::size_t index) const;
-  const std::vector<double>& time() const;    // [s]
-  const std::vector<double>& torque() const;  // [N m], of one slice
-  const RunResult& result() const;            // defaults where the run was interrupted
+  Observables observables(std::size_t index) const;  // of that frame, without reading its balls
+  const std::vector<double>& time() const;           // [s]
+  const std::vector<double>& torque() const;         // [N m], of one slice
+  const RunResult& result() const;                   // defaults where the run was interrupted
   bool complete() const;
   std::string version() const;  // of the program that wrote it
 
