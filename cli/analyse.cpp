@@ -1,3 +1,4 @@
+#include <cmath>
 #include <map>
 #include <memory>
 #include <optional>
@@ -33,7 +34,10 @@ void analyse(Options o) {
   io::check_not_input(o.output, o.input);
   if (mill) io::check_not_input(o.output, o.mill);
   io::check_output_file(o.output, o.force);
-  if (!o.csv.empty()) io::make_output_folder(o.csv);
+  if (!o.csv.empty()) {
+    io::make_output_folder(o.csv);
+    for (const char* table : io::kTables) io::check_output_file(o.csv / table, o.force);
+  }
 
   const ChargeMotion motion = measure(o.input, o.film, o);
   for (const std::string& caveat : motion.caveats) say(o, "note: " + caveat);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
@@ -18,6 +19,7 @@ volatile std::sig_atomic_t g_asked_to_stop = 0;
 void remember(int) { g_asked_to_stop = 1; }
 
 std::string duration(double seconds) {
+  if (!(seconds < 100 * 24 * 3600)) return "months";  // a guess from the first moments
   const int s = static_cast<int>(seconds + 0.5);
   if (s < 60) return fmt::format("{} s", s);
   if (s < 3600) return fmt::format("{} min {:02} s", s / 60, s % 60);
@@ -73,6 +75,7 @@ Progress ProgressLine::callback() {
 void ProgressLine::show(double done) {
   stop_if_asked(if_stopped_);
   if (quiet_) return;
+  done = std::clamp(done, 0.0, 1.0);  // a run that ends on a whole frame may pass its plan
   if (first_ < 0) first_ = done;
   const auto now = std::chrono::steady_clock::now();
   const double since = std::chrono::duration<double>(now - shown_).count();

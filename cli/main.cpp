@@ -34,7 +34,7 @@ void check_verb(const CLI::App& app, const std::string& word) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
+int main(int argc, char** argv) try {
   CLI::App app{"tumble: simulate, animate, film back and compare the charge of a tumbling mill", "tumble"};
   app.set_version_flag("--version", std::string("tumble ") + tumble::kVersion);
   app.require_subcommand(1);
@@ -55,10 +55,10 @@ int main(int argc, char** argv) {
     return fail(std::string(e.what()) + "; see tumble --help", 2);
   } catch (const tumble::Error& e) {
     return fail(e.what(), static_cast<int>(e.kind()));
-  } catch (const std::bad_alloc&) {
-    return fail("out of memory; use fewer balls or frames", 1);
-  } catch (const std::exception& e) {
-    return fail(e.what(), 1);
   }
   return 0;
+} catch (const std::bad_alloc&) {
+  return fail("out of memory; use fewer balls or frames", 1);
+} catch (const std::exception& e) {
+  return fail(e.what(), 1);
 }

@@ -1,10 +1,11 @@
 #include "cli/options.h"
 
+#include <charconv>
 #include <cmath>
 #include <numeric>
+#include <system_error>
 
 #include "core/error.h"
-#include "core/parallel_for.h"
 
 namespace tumble::cli {
 
@@ -17,8 +18,11 @@ void add_common(CLI::App& verb, CommonOptions& options) {
 }
 
 void parse_size(const std::string& text, const std::string& option, int& width, int& height) {
-  char x = 0, rest = 0;
-  if (std::sscanf(text.c_str(), "%d%c%d%c", &width, &x, &height, &rest) != 3 || x != 'x')
+  const char* const end = text.data() + text.size();
+  const auto first = std::from_chars(text.data(), end, width);
+  const bool crossed = first.ec == std::errc() && first.ptr != end && *first.ptr == 'x';
+  const auto second = crossed ? std::from_chars(first.ptr + 1, end, height) : first;
+  if (!crossed || second.ec != std::errc() || second.ptr != end)
     throw InputError(option, "is \"" + text + "\"; give WIDTHxHEIGHT in pixels, such as 1280x720");
   if (width < 160 || height < 120 || width > 7680 || height > 4320 || width % 2 || height % 2)
     throw InputError(option, "is " + text + "; give even numbers from 160x120 to 7680x4320");

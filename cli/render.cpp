@@ -56,10 +56,12 @@ void render(Options o) {
   o.plan.style.overlay = parse_overlay(o.overlay);
   o.plan.format.threads = o.threads;
 
-  const bool pictures = !o.output.has_filename() || fs::is_directory(o.output);
-  if (pictures)
+  std::error_code error;
+  const bool pictures = !o.output.has_filename() || fs::is_directory(o.output, error);
+  if (pictures) {
     io::make_output_folder(o.output);
-  else {
+    io::check_output_file(o.output / picture_name(0), o.force);
+  } else {
     if (o.output.extension() != ".mp4")
       throw InputError(o.output.string(), "is no .mp4; give FILM.mp4, or FRAMES/ for a folder of PNG");
     io::check_not_input(o.output, o.run);

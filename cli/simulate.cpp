@@ -26,7 +26,7 @@ void simulate(const Options& o) {
   if (o.output.extension() == ".xdmf")
     throw InputError(o.output.string(), "is the name of the run's side-car for ParaView; give RUN.h5");
   std::error_code error;
-  if (o.resume && (fs::exists(o.output, error) || io::adopt_complete_run(o.output, config))) {
+  if (o.resume && !o.force && (fs::exists(o.output, error) || io::adopt_complete_run(o.output, config))) {
     // Done is done, provided that it is this run.
     const io::RunReader run(o.output);
     if (io::to_toml(run.setup().config) != io::to_toml(config))

@@ -7,6 +7,8 @@
 #include <cstring>
 #include <exception>
 #include <fstream>
+#include <memory>
+#include <optional>
 #include <vector>
 
 #include "core/angle.h"
@@ -118,6 +120,8 @@ ChargeMotion measure_run(const io::RunReader& run, const CommonOptions& options)
       line.callback());
 }
 
+std::string picture_name(std::size_t index) { return fmt::format("frame_{:06}.png", index); }
+
 void render_run(const io::RunReader& run, const ChargeMotion& truth, const FilmPlan& plan, const fs::path& output,
                 bool as_pictures, const CommonOptions& options) {
   if (run.frame_count() == 0) throw InputError(truth.origin, "holds no frames; simulate for longer");
@@ -173,7 +177,7 @@ void render_run(const io::RunReader& run, const ChargeMotion& truth, const FilmP
       if (film)
         film->write(images[i]);
       else
-        io::write_png((output / fmt::format("frame_{:06}.png", from + i)).string(), images[i]);
+        io::write_png((output / picture_name(from + i)).string(), images[i]);
     }
   }
   if (film) film->finish();

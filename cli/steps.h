@@ -26,6 +26,9 @@ struct FilmPlan {
   io::FilmFormat format;
 };
 
+// Of a PNG in a folder of pictures: frame_000000.png.
+std::string picture_name(std::size_t index);
+
 // Renders a run as a film (`output` is a file) or as numbered PNGs (`output` is a folder that exists). `truth` gives
 // the toe and shoulder marks.
 void render_run(const io::RunReader& run, const ChargeMotion& truth, const FilmPlan& plan, const fs::path& output,

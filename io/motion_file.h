@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <filesystem>
 #include <string>
 
@@ -11,7 +12,8 @@ void write_motion(const std::filesystem::path& path, const ChargeMotion& motion)
 ChargeMotion read_motion(const std::filesystem::path& path);
 bool is_motion_file(const std::filesystem::path& path);
 
-// summary.json, profile.csv, tracks.csv, occupancy.csv and, for run files, torque.csv into an existing folder.
+// All of these go into an existing folder; torque.csv for run files alone.
+inline constexpr std::array kTables{"summary.json", "profile.csv", "tracks.csv", "occupancy.csv", "torque.csv"};
 void write_csv(const std::filesystem::path& folder, const ChargeMotion& motion);
 
 // summary.json as text: also what --json prints.

@@ -106,9 +106,21 @@ fi
 refused 1 'run.h5' run.h5 bash -c "ulimit -f 200; exec '$tumble' simulate mill.toml -o run.h5 --quiet"
 rm -f run.h5.part
 
+# interrupted_after SECONDS FILE COMMAND...: Ctrl-C so long after FILE has appeared.
+cat >interrupted_after <<'SCRIPT'
+#!/usr/bin/env bash
+"${@:3}" & command=$!
+for _ in $(seq 600); do [ -e "$2" ] && break; sleep 0.1; done
+sleep "$1"
+kill -INT "$command"
+wait "$command"
+SCRIPT
+chmod +x interrupted_after
+
 # --- Ctrl-C in the middle, then --resume to the same bytes as undisturbed
 long=(mill.toml --quiet --set run.spin_up=0.2 --set run.revolutions=40)
-refused 1 'interrupted.*--resume' stopped.h5 timeout --preserve-status -s INT 1.5 "$tumble" simulate "${long[@]}" -o stopped.h5 --threads 1
+# Late enough for a checkpoint, which comes two seconds after the start: without one --resume would start afresh.
+refused 1 'interrupted.*--resume' stopped.h5 ./interrupted_after 2.5 stopped.h5.part "$tumble" simulate "${long[@]}" -o stopped.h5 --threads 1
 [ -e stopped.h5.part ] || fail "Ctrl-C lost the interrupted run"
 "$tumble" simulate "${long[@]}" -o stopped.h5 --resume || fail "resume after Ctrl-C"
 "$tumble" simulate "${long[@]}" -o whole.h5
