@@ -5,9 +5,12 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
+#include <cerrno>
 #include <cmath>
 #include <cstring>
 #include <fstream>
+#include <limits>
 #include <sstream>
 #include <system_error>
 
@@ -273,7 +276,7 @@ void apply_set(Config& config, const std::string& assignment) {
   if (value.empty())
     throw InputError("--set: " + one_line(path), "has no value; give KEY=VALUE such as mill.speed=0.7");
   try {
-    const toml::table document = toml::parse(bare_word(value) ? "v = \"" + value + "\"" : "v = " + value);
+    const toml::table document = toml::parse("v = " + (bare_word(value) ? "\"" + value + "\"" : value));
     if (document.size() != 1) throw InputError("--set: " + one_line(path), "more than one value; repeat --set");
     Reader(config, "--set", false).read_node(path, *document.get("v"));
   } catch (const toml::parse_error& e) {

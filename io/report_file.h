@@ -17,7 +17,7 @@ struct RunReport {
   const ChargeMotion* film = nullptr;    // from the rendered film
   const Deviation* deviation = nullptr;  // truth against film
   std::filesystem::path film_file;       // embedded, so that the report opens from disk and by mail
-  double energy_error = kNotGiven;       // |drive work - energy change - dissipation| / drive work
+  double energy_error = kNotGiven;       // (drive work - energy change - dissipation) / drive work
   std::string config_text;               // MILL.toml as it was run
   std::string version;
   double seconds_simulating = 0, seconds_rendering = 0, seconds_analysing = 0;

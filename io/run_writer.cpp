@@ -219,6 +219,11 @@ InputError not_resumable(const fs::path& part, const std::string& why) {
   return InputError(part.string(), "is no interrupted run (" + why + "); remove it to start afresh");
 }
 
+void remove_quietly(const fs::path& path) {
+  std::error_code ignored;
+  fs::remove(path, ignored);
+}
+
 void sync_folder(const fs::path& path) {
   const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
   const int file = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
@@ -263,8 +268,7 @@ struct RunWriter::Impl {
 
   ~Impl() {
     // A run that died before its first frame leaves nothing worth keeping.
-    std::error_code ignored;
-    if (owns_part && frames_written == 0 && last_slot.sequence == 0) fs::remove(part, ignored);
+    if (owns_part && frames_written == 0 && last_slot.sequence == 0) remove_quietly(part);
   }
 
   void write_frame(const Frame& frame) {
@@ -374,13 +378,13 @@ RunWriter::RunWriter(const fs::path& path, const RunSetup& setup, std::size_t ch
     impl_->file = std::move(file);
     impl_->owns_part = true;
   } catch (const hdf5::Failure& e) {
-    fs::remove(layout);
+    remove_quietly(layout);
     throw WorkError(path.string(), e.what());
   } catch (const fs::filesystem_error& e) {
-    fs::remove(layout);
+    remove_quietly(layout);
     throw WorkError(path.string(), e.code().message());
-  } catch (const Error&) {
-    fs::remove(layout);
+  } catch (...) {
+    remove_quietly(layout);
     throw;
   }
 }
