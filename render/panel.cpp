@@ -111,6 +111,14 @@ const char* title_of(Colour by) {
   return "";
 }
 
+// Places after the point that show two digits of the run's mean; fixed for a run, so that the live value does not jump.
+int decimals(double mean) {
+  const double size = std::abs(mean);
+  if (size >= 1000) return 0;
+  if (!(size > 0 && size < 1)) return 1;
+  return std::min(6, 1 - static_cast<int>(std::floor(std::log10(size))));
+}
+
 }  // namespace
 
 std::string time_note(double slow) {
@@ -166,15 +174,16 @@ void draw_still_panel(Canvas& canvas, const Panel& panel, bool pale) {
   rule(canvas, plan.y(62));
   text.add(time_note(panel.slow), plan.right, plan.y(116), quiet(canvas, 13, Align::kRight));
 
-  const double rpm = rpm_from_rad_s(panel.setup.mill_speed), mean = panel.trace.mean();
+  const double rpm = rpm_from_rad_s(panel.setup.mill_speed), mean = panel.trace.mean(),
+               power = mean * panel.setup.mill_speed;
   label_and_remark(canvas, plan.speed_x, plan.y(148), "Speed",
                    fmt::format("{:.1f} % of critical", 100 * rpm / critical_speed_rpm(panel.setup.config.mill)));
   value_and_unit(canvas, plan.speed_x, plan.y(148), fmt::format("{:.1f}", rpm), "rev/min");
   label_and_remark(canvas, plan.torque_x, plan.y(148), "Torque",
-                   std::isnan(mean) ? "of one slice" : fmt::format("mean {:.2f} N m", mean));
+                   std::isnan(mean) ? "of one slice" : fmt::format("mean {:.{}f} N m", mean, decimals(mean) + 1));
   if (!plan.is_small) {
     label_and_remark(canvas, plan.power_x, plan.y(148), "Power",
-                     std::isnan(mean) ? "of one slice" : fmt::format("mean {:.1f} W", mean * panel.setup.mill_speed));
+                     std::isnan(mean) ? "of one slice" : fmt::format("mean {:.{}f} W", power, decimals(power)));
   }
   rule(canvas, plan.y(214));
 
@@ -213,11 +222,13 @@ void draw_moving_panel(Canvas& canvas, const Panel& panel, const Frame& frame) {
   text.add(fmt::format("revolution {:.2f}", revolutions), plan.right, plan.y(95), quiet(canvas, 13, Align::kRight));
 
   const double running = panel.trace.running(frame.time);
-  const double torque = std::isnan(running) ? frame.observed.torque : running;
-  value_and_unit(canvas, plan.torque_x, plan.y(148), std::isnan(torque) ? "–" : fmt::format("{:.1f}", torque), "N m");
+  const double torque = std::isnan(running) ? frame.observed.torque : running, mean = panel.trace.mean();
+  const auto live = [](double value, double of_run) { return fmt::format("{:.{}f}", value, decimals(of_run)); };
+  value_and_unit(canvas, plan.torque_x, plan.y(148), std::isnan(torque) ? "–" : live(torque, mean), "N m");
   if (!plan.is_small) {
     value_and_unit(canvas, plan.power_x, plan.y(148),
-                   std::isnan(torque) ? "–" : fmt::format("{:.1f}", torque * panel.setup.mill_speed), "W");
+                   std::isnan(torque) ? "–" : live(torque * panel.setup.mill_speed, mean * panel.setup.mill_speed),
+                   "W");
   }
   if (panel.plot) draw_torque_cursor(canvas, *panel.plot, panel.trace, frame.time);
 }
