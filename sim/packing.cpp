@@ -170,6 +170,9 @@ Charge place_loosely(const Config& config, const MillModel& model, const Balls& 
   return c;
 }
 
+// Some mills rattle on for long without harm to what follows, hence the end after four falls through the mill.
+double longest_settling(const MillModel& model) { return 4 * std::sqrt(4 * model.shell.radius / model.gravity); }
+
 Charge settle(const MillModel& model, Charge charge, const Progress& progress) {
   MillModel resting = model;
   resting.speed = 0;
@@ -177,16 +180,15 @@ Charge settle(const MillModel& model, Charge charge, const Progress& progress) {
   double scale = 0;  // sum of m g r [J]
   for (std::size_t i = 0; i < mill.charge.size(); ++i)
     scale += mill.charge.mass[i] * model.gravity * mill.charge.radius[i];
-  // At rest: a ball's speed is that of a fall through a hundredth of its radius. Some mills rattle on for long without
-  // harm to what follows, hence the end after four falls through the mill.
-  const double longest = 4 * std::sqrt(4 * model.shell.radius / model.gravity);
+  // At rest: a ball's speed is that of a fall through a hundredth of its radius.
+  const double longest = longest_settling(model);
   const auto check_every =
       static_cast<std::int64_t>(std::ceil(0.1 * std::sqrt(2 * model.shell.radius / model.gravity) / model.time_step));
   const auto steps_per_report = 1 + 1'000'000 / static_cast<std::int64_t>(mill.charge.size());
   while (double(mill.step) * model.time_step < longest) {
     for (std::int64_t k = 0; k < check_every; ++k) {
       advance(mill);
-      if (k % steps_per_report == 0) report(progress, 0);
+      if (k % steps_per_report == 0) report(progress, double(mill.step) * model.time_step / longest);
     }
     if (energies_of(mill).kinetic < 1e-2 * scale) break;
   }

@@ -13,7 +13,9 @@ Balls draw_balls(const Config& config);
 // Throws InputError when they do not fit.
 Charge place_loosely(const Config& config, const MillModel& model, const Balls& balls);
 
-// Lets the charge fall and come to rest in the resting mill. Returns it with velocities zero.
+// Lets the charge fall and come to rest in the resting mill, `longest_settling` [s] at most. Returns it with velocities
+// zero.
+double longest_settling(const MillModel& model);
 Charge settle(const MillModel& model, Charge charge, const Progress& progress);
 
 }  // namespace tumble::sim

@@ -146,12 +146,12 @@ class Checkpoints {
   Clock::time_point last_;
 };
 
-void spin_up(const Config& config, RunState& run, const RunSink& sink, Checkpoints& checkpoints) {
+void spin_up(const Config& config, RunState& run, Checkpoints& checkpoints, const Progress& progress) {
   const MillModel& model = run.mill.model;
   const Tick tick = [&] {
     const double done = revolutions_after(model, run.mill.step);
     const double expected = config.run.spin_up_auto ? std::max(3 * kAutoShortest, 1.5 * done) : config.run.spin_up;
-    report(sink.progress, done / (expected + config.run.revolutions));
+    report(progress, done / (expected + config.run.revolutions));
   };
   while (!spin_up_is_over(config, run)) {
     std::int64_t next = sample_step(model, run.history.size());
@@ -179,10 +179,10 @@ RunResult result_of(const Config& config, const RunState& run) {
 
   const Steadiness s = judge(run.history, static_cast<std::size_t>(run.sampled_before), run.history.size(),
                              run.mill.charge.size(), kCaveatZ);
-  result.steady = s.steady && !run.spin_up_gave_up;
   const auto say = [&](const std::string& sentence) { result.caveat += (result.caveat.empty() ? "" : " ") + sentence; };
   if (run.spin_up_gave_up) say(fmt::format("The mill was not steady after {:g} revolutions of spin-up.", kAutoLongest));
   const double revolutions = revolutions_after(model, run.mill.step - run.averaging_from);
+  result.steady = s.steady && !run.spin_up_gave_up && revolutions >= kFewestToJudge;
   if (revolutions < kFewestToJudge)
     say(fmt::format("{:.3g} averaged revolutions are too few to tell whether the mill is steady.", revolutions));
   else if (!s.steady)
@@ -207,21 +207,28 @@ RunResult simulate(const Config& config, const RunSink& sink, const Checkpoint* 
   const MillModel model = make_mill_model(config);
   const Balls balls = draw_balls(config);
 
+  // Settling may take minutes with many small balls: it has its share of the progress, by simulated time.
+  const double spin_up_expected = config.run.spin_up_auto ? 3 * kAutoShortest : config.run.spin_up;
+  const double settling = longest_settling(model);
+  const double share = settling / (settling + (spin_up_expected + config.run.revolutions) * period(model));
+  const Progress settled = [&](double done) { report(sink.progress, share * done); };
+  const Progress turned = [&](double done) { report(sink.progress, share + (1 - share) * done); };
+
   RunState run;
   if (resume) {
     run.mill = start_mill(model, make_charge(balls));
     restore(run, resume->words);
   } else {
-    run.mill = start_mill(model, settle(model, place_loosely(config, model, balls), sink.progress));
+    run.mill = start_mill(model, settle(model, place_loosely(config, model, balls), settled));
   }
   const std::int64_t frames = frame_count(config, model);
   if (sink.setup) sink.setup({config, balls, model.time_step, model.speed, frames, dissipation_causes()});
 
   Checkpoints checkpoints(sink);
-  if (run.averaging_from < 0) spin_up(config, run, sink, checkpoints);
+  if (run.averaging_from < 0) spin_up(config, run, checkpoints, turned);
   const double spun_up = revolutions_after(model, run.averaging_from);
   const Tick tick = [&] {
-    report(sink.progress, revolutions_after(model, run.mill.step) / (spun_up + config.run.revolutions));
+    report(turned, revolutions_after(model, run.mill.step) / (spun_up + config.run.revolutions));
   };
   while (run.frames_written < frames) {
     run_to(run, run.averaging_from + (run.frames_written + 1) * model.steps_per_frame, tick);

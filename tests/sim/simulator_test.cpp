@@ -127,8 +127,9 @@ TEST(Simulator, ResumedRunGoesOnWithTheSameBits) {
   for (const int wait_at : {0, 15}) {
     std::vector<Checkpoint> checkpoints;
     int frames = 0;
-    bool waited = false;
+    bool waited = false, settled = false;
     RunSink sink;
+    sink.setup = [&](const RunSetup&) { settled = true; };
     const auto wait = [&] {  // checkpoints come by wall time
       if (waited || frames != wait_at) return;
       std::this_thread::sleep_for(std::chrono::milliseconds(2100));
@@ -138,8 +139,8 @@ TEST(Simulator, ResumedRunGoesOnWithTheSameBits) {
       ++frames;
       wait();
     };
-    sink.progress = [&](double done) {
-      if (done > 0) wait();
+    sink.progress = [&](double) {
+      if (settled) wait();
     };
     sink.checkpoint = [&](const Checkpoint& c) { checkpoints.push_back(c); };
     simulate(config, sink);
@@ -156,6 +157,24 @@ TEST(Simulator, ResumedRunGoesOnWithTheSameBits) {
     EXPECT_EQ(rest.result.spectrum.ball_wall, whole.result.spectrum.ball_wall);
     EXPECT_EQ(rest.setup.balls.radius, whole.setup.balls.radius);
   }
+}
+
+TEST(Simulator, TellsItsProgressFromTheSettlingOn) {
+  Config config = short_run();
+  config.run.spin_up = 0.1;
+  config.run.revolutions = 0.1;
+  double last = 0, settled_at = 0;
+  RunSink sink;
+  sink.setup = [&](const RunSetup&) { settled_at = last; };
+  sink.progress = [&](double done) {
+    EXPECT_GE(done, last);
+    last = done;
+  };
+  const RunResult result = simulate(config, sink);
+  EXPECT_GT(settled_at, 0);
+  EXPECT_LT(settled_at, 1);
+  EXPECT_NEAR(last, 1, 0.01);
+  EXPECT_FALSE(result.steady) << "a tenth of a revolution cannot tell";
 }
 
 TEST(Simulator, RefusesATimeStepThatIsNotStable) {
