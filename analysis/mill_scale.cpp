@@ -45,6 +45,50 @@ Contacts find_contacts(const std::vector<std::vector<Detection>>& frames, int si
   return {(static_cast<double>(peak - h.begin()) + 0.5) * kBin, static_cast<int>(gaps.size())};
 }
 
+LightShift find_light_shift(const std::vector<std::vector<Detection>>& frames, const std::vector<double>& radii) {
+  struct Pair {
+    double ratio;   // distance / sum of radii
+    double pu, pv;  // direction from j to i times (ri - rj) / (ri + rj)
+  };
+  std::vector<Pair> pairs;
+  std::vector<double> ratios;
+  for (const auto& f : frames)
+    for (std::size_t i = 0; i < f.size(); ++i)
+      for (std::size_t j = 0; j < i; ++j) {
+        const double ri = radii[static_cast<std::size_t>(f[i].size_class)];
+        const double rj = radii[static_cast<std::size_t>(f[j].size_class)];
+        const double unlike = (ri - rj) / (ri + rj), du = f[i].u - f[j].u, dv = f[i].v - f[j].v;
+        const double gap = std::hypot(du, dv), ratio = gap / (ri + rj);
+        if (std::abs(unlike) < 0.1 || std::abs(ratio - 1) > 0.12) continue;
+        pairs.push_back({ratio, unlike * du / gap, unlike * dv / gap});
+        ratios.push_back(100 * ratio);
+      }
+  LightShift shift;
+  if (pairs.size() < 300) return shift;
+  // ratio = q - s . p, with the share q of the radii at which touching balls are seen; neighbours that do not touch
+  // lie on one side of it alike in all directions.
+  const auto histogram = smooth_histogram(ratios, 115, 1);
+  double q = (static_cast<double>(std::max_element(histogram.begin(), histogram.end()) - histogram.begin()) + 0.5) *
+             kBin / 100;
+  for (const double window : {0.06, 0.045, 0.03, 0.03, 0.03, 0.03}) {
+    cv::Matx33d a = cv::Matx33d::zeros();
+    cv::Vec3d b(0, 0, 0);
+    for (const Pair& p : pairs) {
+      const double miss = (p.ratio - q + shift.u * p.pu + shift.v * p.pv) / window;
+      if (std::abs(miss) >= 1) continue;
+      const double w = (1 - miss * miss) * (1 - miss * miss);
+      const cv::Vec3d row(1, -p.pu, -p.pv);
+      a += w * row * row.t();
+      b += w * p.ratio * row;
+    }
+    cv::Vec3d x;
+    if (a(0, 0) < 100 || !cv::solve(a, b, x, cv::DECOMP_CHOLESKY)) return {};
+    q = x[0];
+    shift = {true, x[1], x[2]};
+  }
+  return shift;
+}
+
 ShellTouch find_shell_touch(const std::vector<std::vector<Detection>>& frames, int size_class,
                             const std::vector<double>& radii, const Circle& centre, double least, double most) {
   struct Place {

@@ -14,6 +14,17 @@ struct Contacts {
 
 Contacts find_contacts(const std::vector<std::vector<Detection>>& frames, int size_class);
 
+// From detected centres to true ones, in radii, v down: light from one side moves the rims of all balls in proportion
+// to their size.
+struct LightShift {
+  bool found = false;
+  double u = 0, v = 0;
+};
+
+// From balls of unequal size that touch: the larger one is moved further, so the distance at which they seem to touch
+// depends on the direction from one to the other. `radii`: of all classes [px]. Not found for a charge of one size.
+LightShift find_light_shift(const std::vector<std::vector<Detection>>& frames, const std::vector<double>& radii);
+
 struct ShellTouch {
   bool found = false;
   double reach = 0;                 // distance from the axis of balls that touch the shell [px]

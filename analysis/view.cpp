@@ -78,6 +78,11 @@ MillView find_view(const std::vector<std::vector<Detection>>& balls, const BallL
     if (guess > 0) view.mill.radius = guess;
     caveats.push_back("few balls were seen to lie against the shell: its circle is a guess from the picture's edges");
   }
+  if (const LightShift light = find_light_shift(balls, radii); light.found) {
+    // Unequal balls touch in all directions, balls against the shell in those of the charge alone.
+    view.shift_u = light.u;
+    view.shift_v = light.v;
+  }
   const double touched = view.mill.radius;
   double nearest = (best.found ? kSnap : 0.03) * touched;
   for (const RingEdge& ring : survey.rings) {

@@ -110,7 +110,7 @@ class FastFilm : public testing::TestWithParam<Case> {};
 
 TEST_P(FastFilm, FindsAndFollowsTheBalls) {
   const Case& c = GetParam();
-  const SimulatedMill mill = simulate_in_memory(mill_of(c, 0.5, 200));
+  const SimulatedMill mill = simulate_in_memory(mill_of(c, 0.4, 200));
   const Film film(mill, c.mirror, 200);
   const Config drawing = drawing_of(mill.setup.config);
   analysis::FilmOptions options;
@@ -146,10 +146,12 @@ TEST_P(FastFilm, FindsAndFollowsTheBalls) {
               switches, found);
 }
 
-INSTANTIATE_TEST_SUITE_P(Some, FastFilm,
-                         testing::Values(Case{0.7, LifterProfile::kRectangle, false},
-                                         Case{0.9, LifterProfile::kTriangle, true}),
-                         name);
+INSTANTIATE_TEST_SUITE_P(
+    All, FastFilm,
+    testing::Values(Case{0.5, LifterProfile::kRectangle, true}, Case{0.5, LifterProfile::kTriangle, false},
+                    Case{0.7, LifterProfile::kRectangle, false}, Case{0.7, LifterProfile::kTriangle, true},
+                    Case{0.9, LifterProfile::kRectangle, true}, Case{0.9, LifterProfile::kTriangle, false}),
+    name);
 
 }  // namespace
 }  // namespace tumble
