@@ -275,7 +275,8 @@ double explained(const std::vector<Detection>& found, const std::vector<double>&
   return sum;
 }
 
-std::vector<double> classes_of(const std::vector<Detection>& found, const std::vector<double>& known) {
+std::vector<double> classes_of(const std::vector<Detection>& found, const std::vector<double>& known,
+                               ScaleRange scales) {
   double smallest = 1e9, largest = 0;
   for (const Detection& d : found) {
     smallest = std::min(smallest, d.radius);
@@ -284,7 +285,8 @@ std::vector<double> classes_of(const std::vector<Detection>& found, const std::v
   std::vector<double> classes;
   if (!known.empty()) {  // one unknown: pixels per unit
     double best = 0, scale = 0;
-    for (double s = smallest / known.back(); s < largest / known.front(); s *= 1.005) {
+    const double least = std::max(scales.least, smallest / known.back());
+    for (double s = least; s < std::min(scales.most, largest / known.front()); s *= 1.005) {
       std::vector<double> radii;
       for (double r : known) radii.push_back(s * r);
       const double value = explained(found, radii);
@@ -323,7 +325,8 @@ std::vector<double> classes_of(const std::vector<Detection>& found, const std::v
 
 }  // namespace
 
-BallLook learn_look(const std::vector<cv::Mat>& pictures, const Circle& bound, const std::vector<double>& known) {
+BallLook learn_look(const std::vector<cv::Mat>& pictures, const Circle& bound, const std::vector<double>& known,
+                    ScaleRange scales) {
   BallLook look;
   if (pictures.empty()) return look;
   const cv::Rect window = window_of(bound, pictures.front().size());
@@ -347,7 +350,7 @@ BallLook learn_look(const std::vector<cv::Mat>& pictures, const Circle& bound, c
     const auto here = free_circles(maps[i], look.polarity, bound);
     found.insert(found.end(), here.begin(), here.end());
   }
-  if (!found.empty()) look.radii = classes_of(found, known);
+  if (!found.empty()) look.radii = classes_of(found, known, scales);
   return look;
 }
 

@@ -27,9 +27,15 @@ struct BallLook {
 // robust), so that highlights, marks and holes do not pull them.
 std::vector<Detection> detect_balls(const cv::Mat& bgr, const BallLook& look, const Circle& bound);
 
+struct ScaleRange {  // pixels per unit of the known radii
+  double least = 0, most = 1e9;
+};
+
 // Sizes, polarity and clearness of the balls from a few pictures of the film; radii empty where no balls are seen.
 // `known` sizes (any unit, ascending) give the number of classes and their ratios; without them, classes are found.
-BallLook learn_look(const std::vector<cv::Mat>& pictures, const Circle& bound, const std::vector<double>& known);
+// `scales` bounds that unknown: graded charges look alike one class up or down.
+BallLook learn_look(const std::vector<cv::Mat>& pictures, const Circle& bound, const std::vector<double>& known,
+                    ScaleRange scales = {});
 
 // A circle of about `radius` at about (u, v) put onto the rim's edge points. With `free_radius` the radius is fitted
 // too.

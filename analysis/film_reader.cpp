@@ -1,5 +1,6 @@
 #include "analysis/film_reader.h"
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <opencv2/core/utils/logger.hpp>
@@ -10,6 +11,8 @@
 
 namespace tumble::analysis {
 namespace {
+
+constexpr int kLeastSide = 540;  // of the pictures handed out [px]
 
 // 16 bits to 8, grey and alpha to BGR: the rest of the room knows one kind of picture.
 void to_bgr8(cv::Mat& picture) {
@@ -34,9 +37,10 @@ FilmReader::FilmReader(const std::string& path) {
   } catch (const cv::Exception&) {
   }
   if (!opened) throw InputError(path, "cannot be read as a film; a video file was expected, such as MP4 with H.264");
-  if (!next(first_))
+  if (!decode(first_))
     throw InputError(path, "holds no picture that can be decoded; a film with at least one frame was expected");
-  size_ = first_.size();
+  enlarged_ = std::clamp((kLeastSide - 1) / std::min(first_.rows, first_.cols) + 1, 1, 4);
+  size_ = first_.size() * enlarged_;
   const double fps = capture_.get(cv::CAP_PROP_FPS);
   fps_ = fps > 0 && fps < 1e5 ? fps : kNotGiven;
   const double count = capture_.get(cv::CAP_PROP_FRAME_COUNT);
@@ -47,8 +51,14 @@ bool FilmReader::next(cv::Mat& picture) {
   if (!first_.empty()) {
     picture = std::move(first_);
     first_ = cv::Mat();
-    return true;
+  } else if (!decode(picture)) {
+    return false;
   }
+  if (enlarged_ > 1) cv::resize(picture, picture, size_, 0, 0, cv::INTER_CUBIC);
+  return true;
+}
+
+bool FilmReader::decode(cv::Mat& picture) {
   try {
     if (!capture_.read(picture) || picture.empty()) return false;
     to_bgr8(picture);

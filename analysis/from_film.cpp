@@ -107,7 +107,12 @@ ChargeMotion measure_film(const std::string& path, const FilmOptions& options, c
   motion.frames_per_second = std::isnan(options.recorded_fps) ? reader.frames_per_second() : options.recorded_fps;
   const double fps = motion.frames_per_second;
 
-  const BallLook look = learn_look(survey.samples, survey.centre, known_radii(known));
+  ScaleRange scales;  // the shell lies among the circles about the axis
+  if (known.mill.diameter > 0) {
+    scales.least = 0.98 * strip_inner(survey.centre) / (0.5 * known.mill.diameter);
+    scales.most = 1.02 * strip_outer(survey.centre) / (0.5 * known.mill.diameter);
+  }
+  const BallLook look = learn_look(survey.samples, survey.centre, known_radii(known), scales);
   const DrumPattern drum = learn_drum(survey.strips, known.mill.lifters.count, kNotGiven);
   Pass pass = detect_all(path, survey, look, drum, progress);
   motion.frames = static_cast<int>(pass.balls.size());
@@ -221,6 +226,7 @@ ChargeMotion measure_film(const std::string& path, const FilmOptions& options, c
     statistics.add(static_cast<int>(f), static_cast<double>(f) / rate, angle, balls);
   }
   statistics.finish(motion);
+  shrink_to_film(motion, reader.enlarged());
   if (std::isnan(view.metres_per_pixel)) {
     forget_lengths(motion);
     motion.caveats.push_back("scale unknown: give mill.diameter or charge.balls");

@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "analysis/film_reader.h"
 #include "analysis/mill_scale.h"
 
 namespace tumble::analysis {
 namespace {
 
-constexpr double kSnap = 0.006;  // of R: an edge this near to where the balls stop is the shell
+constexpr double kSnap = 0.006;   // of R: an edge this near to where the balls stop is the shell
+constexpr double kSearch = 0.03;  // of R: and this near it may be
 
 }  // namespace
 
@@ -84,11 +86,20 @@ MillView find_view(const std::vector<std::vector<Detection>>& balls, const BallL
     view.shift_v = light.v;
   }
   const double touched = view.mill.radius;
-  double nearest = (best.found ? kSnap : 0.03) * touched;
+  double nearest = (best.found ? kSnap : kSearch) * touched, clearest = 0;
+  bool snapped = false;
   for (const RingEdge& ring : survey.rings) {
     const double miss = std::abs(ring.circle.radius - touched);
     if (ring.coverage < 0.5 || miss >= nearest) continue;
     nearest = miss;
+    snapped = true;
+    view.mill.radius = ring.circle.radius;
+  }
+  for (const RingEdge& ring : survey.rings) {  // what stopped there were no balls, perhaps: the clearest circle nearby
+    const double clear = std::abs(ring.strength) * ring.coverage;
+    if (snapped || ring.coverage < 0.9 || std::abs(ring.circle.radius - touched) > kSearch * touched) continue;
+    if (clear <= clearest) continue;
+    clearest = clear;
     view.mill.radius = ring.circle.radius;
   }
 
@@ -115,6 +126,20 @@ MillView find_view(const std::vector<std::vector<Detection>>& balls, const BallL
     }
   }
   return view;
+}
+
+void shrink_to_film(ChargeMotion& m, int enlarged) {
+  CameraView& camera = m.camera;
+  camera.centre_u_px = in_film(camera.centre_u_px, enlarged);
+  camera.centre_v_px = in_film(camera.centre_v_px, enlarged);
+  camera.radius_px /= enlarged;
+  camera.metres_per_pixel *= enlarged;
+  camera.width_px /= enlarged;
+  camera.height_px /= enlarged;
+  for (TrackPoint& p : m.tracks) {
+    p.u_px = in_film(p.u_px, enlarged);
+    p.v_px = in_film(p.v_px, enlarged);
+  }
 }
 
 void forget_lengths(ChargeMotion& m) {

@@ -29,6 +29,9 @@ std::vector<double> known_radii(const Config& known);
 MillView find_view(const std::vector<std::vector<Detection>>& balls, const BallLook& look, const FilmSurvey& survey,
                    const DrumPattern& drum, const Config& known, std::vector<std::string>& caveats);
 
+// Places and lengths in pixels of enlarged pictures become those of the film itself.
+void shrink_to_film(ChargeMotion& motion, int enlarged);
+
 // Lengths of a motion measured without a scale become NaN; angles, pixels and shares stay.
 void forget_lengths(ChargeMotion& motion);
 

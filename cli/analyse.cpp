@@ -21,11 +21,13 @@ const std::map<std::string, Rotation> kRotations = {{"auto", Rotation::kUnknown}
 
 struct Options : CommonOptions {
   fs::path input, output, mill, csv;
+  std::string rotation = "auto";
   analysis::FilmOptions film;
 };
 
 void analyse(Options o) {
   limit_threads(o.threads);
+  o.film.rotation = parse_name(o.rotation, "--rotation", kRotations);
   std::optional<Config> mill;
   if (!o.mill.empty()) mill = io::read_config(o.mill);
   o.film.mill = mill ? &*mill : nullptr;
@@ -56,9 +58,8 @@ void add_analyse(CLI::App& app) {
   verb->add_option("--mill", o->mill, "MILL.toml with what is known of the mill; may be partial");
   verb->add_option("--csv", o->csv, "Folder for summary.json, profile.csv, tracks.csv, occupancy.csv");
   verb->add_option("--recorded-fps", o->film.recorded_fps, "The camera's rate where the file's is another, 1/s");
-  verb->add_option("--rotation", o->film.rotation, "How the mill turns in the film: auto, clockwise, counter_clockwise")
-      ->transform(CLI::CheckedTransformer(kRotations, CLI::ignore_case))
-      ->default_str("auto");
+  verb->add_option("--rotation", o->rotation, "How the mill turns in the film: auto, clockwise, counter_clockwise")
+      ->capture_default_str();
   add_common(*verb, *o);
   verb->footer("Example: tumble analyse film.mp4 --mill mill.toml -o motion.h5 --csv results");
   verb->callback([o] { analyse(*o); });

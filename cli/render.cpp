@@ -1,5 +1,6 @@
 #include <map>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "cli/options.h"
@@ -19,8 +20,7 @@ const std::map<std::string, render::Colour> kColours = {{"speed", render::Colour
 
 struct Options : CommonOptions {
   fs::path run, output;
-  std::string size = "1280x720", overlay = "toe,shoulder";
-  render::Colour colour = render::Colour::kSpeed;
+  std::string size = "1280x720", overlay = "toe,shoulder", colour = "speed";
   double fps = 60;
   FilmPlan plan;
 };
@@ -52,7 +52,7 @@ void render(Options o) {
     throw InputError("--slow", "must lie between 0.01 and 10000; 1 is true time, 4 is four times slower");
   o.plan.style.width = o.plan.format.width;
   o.plan.style.height = o.plan.format.height;
-  o.plan.style.colour = o.colour;
+  o.plan.style.colour = parse_name(o.colour, "--colour", kColours);
   o.plan.style.overlay = parse_overlay(o.overlay);
   o.plan.format.threads = o.threads;
 
@@ -71,7 +71,12 @@ void render(Options o) {
   ChargeMotion truth;
   if (o.plan.style.overlay.toe || o.plan.style.overlay.shoulder) truth = measure_run(run, o);
   truth.origin = o.run.string();
-  render_run(run, truth, o.plan, o.output, pictures, o);
+  const std::size_t frames = render_run(run, truth, o.plan, o.output, pictures, o);
+  if (!o.json) return;
+  const nlohmann::ordered_json summary = {{"output", o.output.string()},    {"frames", frames},
+                                          {"frames_per_second", o.fps},     {"slow", o.plan.style.slow},
+                                          {"width_px", o.plan.style.width}, {"height_px", o.plan.style.height}};
+  print(summary.dump(2) + "\n");
 }
 
 }  // namespace
@@ -84,9 +89,7 @@ void add_render(CLI::App& app) {
   verb->add_option("--size", o->size, "Picture size in pixels")->capture_default_str();
   verb->add_option("--fps", o->fps, "Film frames per second")->capture_default_str();
   verb->add_option("--slow", o->plan.style.slow, "How many times slower than true time")->capture_default_str();
-  verb->add_option("--colour", o->colour, "Colour of the balls: speed, size, spin or steel")
-      ->transform(CLI::CheckedTransformer(kColours, CLI::ignore_case))
-      ->default_str("speed");
+  verb->add_option("--colour", o->colour, "Colour of the balls: speed, size, spin or steel")->capture_default_str();
   verb->add_option("--overlay", o->overlay, "Any of toe,shoulder,tracks,velocity, or none")->capture_default_str();
   verb->add_flag("--mirror", o->plan.style.mirror, "See the mill from its other end: it turns clockwise");
   verb->add_option("--preset", o->plan.format.preset, "x264 preset, ultrafast to veryslow")->capture_default_str();

@@ -36,6 +36,9 @@ void simulate(const Options& o) {
     return;
   }
   io::check_output_file(o.output, o.force);
+  if (!o.resume && fs::exists(fs::path(o.output) += ".part", error))
+    say(o, "note: starting afresh over the interrupted " + o.output.string() +
+               ".part; --resume would have gone on with it");
   simulate_to_file(config, o.output, o.resume, o);
   if (o.json) {
     const io::RunReader run(o.output);

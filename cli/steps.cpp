@@ -92,7 +92,7 @@ void simulate_to_file(const Config& config, const fs::path& output, bool resume,
   if (resume) checkpoint = io::read_checkpoint(output, config);
   std::unique_ptr<io::RunWriter> writer;
   ProgressLine line(options, "simulating",
-                    "nothing is lost; go on with: tumble simulate ... -o " + output.string() + " --resume");
+                    "the run so far is kept; go on with: tumble simulate ... -o " + output.string() + " --resume");
   sim::RunSink sink;
   sink.setup = [&](const RunSetup& setup) {
     writer = std::make_unique<io::RunWriter>(
@@ -122,8 +122,8 @@ ChargeMotion measure_run(const io::RunReader& run, const CommonOptions& options)
 
 std::string picture_name(std::size_t index) { return fmt::format("frame_{:06}.png", index); }
 
-void render_run(const io::RunReader& run, const ChargeMotion& truth, const FilmPlan& plan, const fs::path& output,
-                bool as_pictures, const CommonOptions& options) {
+std::size_t render_run(const io::RunReader& run, const ChargeMotion& truth, const FilmPlan& plan,
+                       const fs::path& output, bool as_pictures, const CommonOptions& options) {
   if (run.frame_count() == 0) throw InputError(truth.origin, "holds no frames; simulate for longer");
   const double film_rate = double(plan.format.fps_numerator) / plan.format.fps_denominator;
   const double span = run.time().back() - run.time().front();
@@ -182,6 +182,7 @@ void render_run(const io::RunReader& run, const ChargeMotion& truth, const FilmP
   }
   if (film) film->finish();
   report(progress, 1);
+  return count;
 }
 
 ChargeMotion measure(const fs::path& input, const analysis::FilmOptions& film, const CommonOptions& options) {

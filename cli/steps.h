@@ -30,9 +30,9 @@ struct FilmPlan {
 std::string picture_name(std::size_t index);
 
 // Renders a run as a film (`output` is a file) or as numbered PNGs (`output` is a folder that exists). `truth` gives
-// the toe and shoulder marks.
-void render_run(const io::RunReader& run, const ChargeMotion& truth, const FilmPlan& plan, const fs::path& output,
-                bool as_pictures, const CommonOptions& options);
+// the toe and shoulder marks. Returns the number of pictures.
+std::size_t render_run(const io::RunReader& run, const ChargeMotion& truth, const FilmPlan& plan,
+                       const fs::path& output, bool as_pictures, const CommonOptions& options);
 
 // The one door for all inputs: run file, folder of stills, film.
 ChargeMotion measure(const fs::path& input, const analysis::FilmOptions& film, const CommonOptions& options);

@@ -6,8 +6,7 @@ set -euo pipefail
 
 packages=(g++ cmake ninja-build pkg-config
   libeigen3-dev libtbb-dev libhdf5-dev libosmesa6-dev libfreetype-dev fonts-dejavu-core libpng-dev
-  libopencv-core-dev libopencv-imgproc-dev libopencv-imgcodecs-dev libopencv-videoio-dev libopencv-video-dev
-  libopencv-calib3d-dev libopencv-features2d-dev
+  libopencv-core-dev libopencv-imgproc-dev libopencv-imgcodecs-dev libopencv-videoio-dev
   libavcodec-dev libavformat-dev libavutil-dev
   libcli11-dev libtomlplusplus-dev nlohmann-json3-dev libfmt-dev)
 if [ "${1:-}" = test ]; then
