@@ -285,8 +285,8 @@ std::vector<double> classes_of(const std::vector<Detection>& found, const std::v
   std::vector<double> classes;
   if (!known.empty()) {  // one unknown: pixels per unit
     double best = 0, scale = 0;
-    const double least = std::max(scales.least, smallest / known.back());
-    for (double s = least; s < std::min(scales.most, largest / known.front()); s *= 1.005) {
+    for (double s = smallest / known.back(); s < largest / known.front(); s *= 1.005) {
+      if (s < scales.least || s > scales.most) continue;
       std::vector<double> radii;
       for (double r : known) radii.push_back(s * r);
       const double value = explained(found, radii);

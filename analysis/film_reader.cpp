@@ -12,7 +12,7 @@
 namespace tumble::analysis {
 namespace {
 
-constexpr int kLeastSide = 540;  // of the pictures handed out [px]
+constexpr int kLeastSide = 361;  // of the pictures handed out [px]: films of 360 lines and fewer are enlarged
 
 // 16 bits to 8, grey and alpha to BGR: the rest of the room knows one kind of picture.
 void to_bgr8(cv::Mat& picture) {

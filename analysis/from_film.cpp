@@ -107,10 +107,10 @@ ChargeMotion measure_film(const std::string& path, const FilmOptions& options, c
   motion.frames_per_second = std::isnan(options.recorded_fps) ? reader.frames_per_second() : options.recorded_fps;
   const double fps = motion.frames_per_second;
 
-  ScaleRange scales;  // the shell lies among the circles about the axis
+  ScaleRange scales;  // the shell lies among the circles about the axis; rims look up to 15 % smaller or larger
   if (known.mill.diameter > 0) {
-    scales.least = 0.98 * strip_inner(survey.centre) / (0.5 * known.mill.diameter);
-    scales.most = 1.02 * strip_outer(survey.centre) / (0.5 * known.mill.diameter);
+    scales.least = 0.85 * strip_inner(survey.centre) / (0.5 * known.mill.diameter);
+    scales.most = 1.15 * strip_outer(survey.centre) / (0.5 * known.mill.diameter);
   }
   const BallLook look = learn_look(survey.samples, survey.centre, known_radii(known), scales);
   const DrumPattern drum = learn_drum(survey.strips, known.mill.lifters.count, kNotGiven);

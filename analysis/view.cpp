@@ -9,8 +9,7 @@
 namespace tumble::analysis {
 namespace {
 
-constexpr double kSnap = 0.006;   // of R: an edge this near to where the balls stop is the shell
-constexpr double kSearch = 0.03;  // of R: and this near it may be
+constexpr double kSnap = 0.006;  // of R: an edge this near to where the balls stop is the shell
 
 }  // namespace
 
@@ -86,20 +85,11 @@ MillView find_view(const std::vector<std::vector<Detection>>& balls, const BallL
     view.shift_v = light.v;
   }
   const double touched = view.mill.radius;
-  double nearest = (best.found ? kSnap : kSearch) * touched, clearest = 0;
-  bool snapped = false;
+  double nearest = (best.found ? kSnap : 0.03) * touched;
   for (const RingEdge& ring : survey.rings) {
     const double miss = std::abs(ring.circle.radius - touched);
     if (ring.coverage < 0.5 || miss >= nearest) continue;
     nearest = miss;
-    snapped = true;
-    view.mill.radius = ring.circle.radius;
-  }
-  for (const RingEdge& ring : survey.rings) {  // what stopped there were no balls, perhaps: the clearest circle nearby
-    const double clear = std::abs(ring.strength) * ring.coverage;
-    if (snapped || ring.coverage < 0.9 || std::abs(ring.circle.radius - touched) > kSearch * touched) continue;
-    if (clear <= clearest) continue;
-    clearest = clear;
     view.mill.radius = ring.circle.radius;
   }
 
