@@ -119,7 +119,7 @@ TEST_P(FastFilm, FindsAndFollowsTheBalls) {
   const double metres_per_pixel = 0.2725 / 302.4;  // the renderer's plan: R is 302.4 px high in a picture of 720
 
   std::size_t found = 0, switches = 0;
-  double squares = 0;
+  double squares = 0, squares_px = 0;
   std::map<int, std::size_t> ball_of_track;
   for (const TrackPoint& p : seen.tracks) {
     const Frame& f = mill.frames[static_cast<std::size_t>(p.frame)];
@@ -132,18 +132,24 @@ TEST_P(FastFilm, FindsAndFollowsTheBalls) {
     if (best > mill.setup.balls.radius[nearest] / 2) continue;  // a false ball
     ++found;
     squares += best * best;
+    const double u = 399.5 + (c.mirror ? -1 : 1) * f.x[nearest] / metres_per_pixel;  // the renderer's plan
+    const double v = 359.5 - f.y[nearest] / metres_per_pixel;
+    squares_px += (p.u_px - u) * (p.u_px - u) + (p.v_px - v) * (p.v_px - v);
     const auto [track, is_new] = ball_of_track.try_emplace(p.id, nearest);
     if (!is_new && track->second != nearest) ++switches, track->second = nearest;
   }
   const double truth = double(mill.frames.size() * mill.setup.balls.size());
-  const double recall = double(found) / truth, rmse_px = std::sqrt(squares / double(found)) / metres_per_pixel;
+  const double recall = double(found) / truth, rmse_px = std::sqrt(squares_px / double(found));
+  const double rmse_mm = 1e3 * std::sqrt(squares / double(found));
   const double false_share = double(seen.tracks.size() - found) / double(seen.tracks.size());
   EXPECT_GE(recall, 0.98);
   EXPECT_LE(false_share, 0.01);
   EXPECT_LE(rmse_px, 0.5);
+  EXPECT_NEAR(seen.camera.centre_u_px, 399.5, 0.5);
+  EXPECT_NEAR(seen.camera.centre_v_px, 359.5, 0.5);
   EXPECT_LE(double(switches) / double(found), 1e-3);
-  std::printf("             recall %.4f  false %.4f  RMSE %.3f px  switches %zu of %zu\n", recall, false_share, rmse_px,
-              switches, found);
+  std::printf("             recall %.4f  false %.4f  RMSE %.3f px %.3f mm  switches %zu of %zu\n", recall, false_share,
+              rmse_px, rmse_mm, switches, found);
 }
 
 INSTANTIATE_TEST_SUITE_P(
