@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Fails where a tracked source is not as clang-format would have it.
+# Fails where a source is not as clang-format would have it.
 set -euo pipefail
 cd "$(dirname "$0")/.."
-git ls-files '*.h' '*.cpp' | xargs clang-format --dry-run --Werror
+find analysis cli core diagnose io render sim tests -name '*.h' -o -name '*.cpp' | xargs clang-format --dry-run --Werror
