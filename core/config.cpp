@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "core/angle.h"
+#include "core/effects.h"
 #include "core/error.h"
 #include "core/mill_shape.h"
 
@@ -135,10 +136,43 @@ void check_contact(const Checker& c, const Contact& k) {
   c.not_negative("contact.tangential_stiffness", k.tangential_stiffness, "N/m");
   c.not_negative("contact.friction", k.friction, "");
   c.range("contact.restitution", k.restitution, 0.01, 1, "");
+  c.range("contact.friction_drop_at_critical", k.friction_drop_at_critical, 0, 1, "");
   c.positive("contact.wall.normal_stiffness", k.wall.normal_stiffness, "N/m");
   c.not_negative("contact.wall.tangential_stiffness", k.wall.tangential_stiffness, "N/m");
   c.not_negative("contact.wall.friction", k.wall.friction, "");
   c.range("contact.wall.restitution", k.wall.restitution, 0.01, 1, "");
+}
+
+void check_effects(const Checker& c, const Config& config) {
+  for (const auto& [name, settings] : config.effects) {
+    const Effect* effect = find_effect(name);
+    const std::string table = "effects." + name;
+    if (!effect) c.fail(table, "no such effect; `tumble effects` lists what there is");
+    std::string strengths;
+    bool any = false;
+    for (const EffectParameter& p : effect->parameters) {
+      if (p.strength) strengths += (strengths.empty() ? "" : " or ") + std::string(p.name);
+      const auto given = settings.find(p.name);
+      if (given == settings.end()) continue;
+      any = any || p.strength;
+      for (const double v : given->second) c.range(table + "." + p.name, v, p.least, p.most, p.unit);
+      if (!p.list && given->second.size() != 1) c.fail(table + "." + p.name, "must be one number");
+      for (const double v : given->second)
+        if ((p.list || p.whole) && v != std::floor(v))
+          c.fail(table + "." + p.name, "is " + number(v) + ", must be whole");
+      if (!p.list || config.mill.lifters.count < 1) continue;
+      for (const double v : given->second)
+        if (v >= config.mill.lifters.count)
+          c.fail(table + "." + p.name, "names lifter " + number(v) + ", the mill's lifters are 0 to " +
+                                           std::to_string(config.mill.lifters.count - 1));
+    }
+    for (const auto& [key, values] : settings)
+      if (!find_parameter(*effect, key))
+        c.fail(table + "." + key, "no such parameter; see `tumble effects " + name + "`");
+    if (!any) c.fail(table, "has no strength; give " + strengths);
+  }
+  if (config.contact.law == ContactLaw::kHertz && config.effects.contains("hertz_contact"))
+    c.fail("contact.law", "is \"hertz\", the whole of effects.hertz_contact; keep one of the two");
 }
 
 void check_run(const Checker& c, const RunPlan& run) {
@@ -162,6 +196,7 @@ void check(const Config& config) {
   check_lifters(c, config.mill);
   check_charge(c, config);
   check_contact(c, config.contact);
+  check_effects(c, config);
   check_run(c, config.run);
 }
 
@@ -206,13 +241,22 @@ double speed_fraction(const Mill& mill) {
   return std::isnan(mill.speed) ? mill.speed_rpm / critical_speed_rpm(mill) : mill.speed;
 }
 
-Contact wall_contact(const Contact& contact) {
+Contact ball_contact(const Config& config) {
+  Contact c = config.contact;
+  c.friction *= std::max(0.0, 1 - c.friction_drop_at_critical * speed_fraction(config.mill));
+  return c;
+}
+
+Contact wall_contact(const Config& config) {
   const auto or_else = [](double wall, double ball) { return std::isnan(wall) ? ball : wall; };
+  const Contact& contact = config.contact;
   Contact c = contact;
   c.normal_stiffness = or_else(contact.wall.normal_stiffness, contact.normal_stiffness);
   c.tangential_stiffness = or_else(contact.wall.tangential_stiffness, contact.tangential_stiffness);
   c.friction = or_else(contact.wall.friction, contact.friction);
   c.restitution = or_else(contact.wall.restitution, contact.restitution);
+  c.friction *= std::max(0.0, 1 - c.friction_drop_at_critical * speed_fraction(config.mill));
+  if (has_effect(config, "wall_friction")) c.friction *= 1 + effect_value(config, "wall_friction", "increase");
   return c;
 }
 
@@ -291,10 +335,16 @@ const char* name_of(LifterProfile profile) {
       return "triangle";
     case LifterProfile::kTrapezoid:
       return "trapezoid";
+    case LifterProfile::kWave:
+      return "wave";
+    case LifterProfile::kPolygon:
+      return "polygon";
+    case LifterProfile::kSwivel:
+      return "swivel";
   }
   return "";
 }
 
-const char* name_of(ContactLaw) { return "linear"; }
+const char* name_of(ContactLaw law) { return law == ContactLaw::kHertz ? "hertz" : "linear"; }
 
 }  // namespace tumble

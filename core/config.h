@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <map>
@@ -12,8 +13,8 @@ namespace tumble {
 
 inline constexpr double kNotGiven = std::numeric_limits<double>::quiet_NaN();
 
-enum class LifterProfile { kNone, kRectangle, kTriangle, kTrapezoid };
-enum class ContactLaw { kLinear };
+enum class LifterProfile { kNone, kRectangle, kTriangle, kTrapezoid, kWave, kPolygon, kSwivel };
+enum class ContactLaw { kLinear, kHertz };
 
 struct Lifters {
   int count = 0;  // number of lifters round the shell, >= 1 unless profile is none
@@ -22,6 +23,10 @@ struct Lifters {
   double width = kNotGiven;               // at the foot, across the radius [m], > 0
   double leading_angle_deg = kNotGiven;   // leading face against the radius, 0 = radial, [0, 85]
   double trailing_angle_deg = kNotGiven;  // trailing face against the radius, [0, 85]
+  double swivel_angle_deg = kNotGiven;    // swivel: the bar's tilt, > 0 back against the rotation, [-60, 60]
+  // polygon: the outline from the trailing foot over the top to the leading foot, { height above the shell, across }
+  // [m]
+  std::vector<std::array<double, 2>> points;
 };
 
 struct Mill {
@@ -60,6 +65,9 @@ struct Contact {
   double tangential_stiffness = 3e5;  // k_t [N/m], >= 0
   double friction = 0.2;              // mu, ball on ball, >= 0
   double restitution = 0.8;           // e, ball on ball, (0, 1]
+  // Share of every friction that is lost at critical speed, linear in the speed: mu (1 - drop phi), >= 0 (1992 paper,
+  // p. 603, for swivel and triangular lifters), [0, 1].
+  double friction_drop_at_critical = 0;
   WallContact wall;
 };
 
@@ -72,10 +80,14 @@ struct RunPlan {
   std::uint64_t seed = 1;            // of the packing
 };
 
+// [effects.NAME]: what was given of each effect; its meaning is core/effects.h's.
+using EffectSettings = std::map<std::string, std::vector<double>>;  // parameter -> value, or the values of a list
+
 struct Config {
   Mill mill;
   ChargeMix charge;
   Contact contact;
+  std::map<std::string, EffectSettings> effects;
   RunPlan run;
 
   // Where a key was set ("mill.toml:12" or "--set"), for messages; keys that were left at their default are absent.
@@ -96,8 +108,10 @@ double critical_speed_rpm(const Mill& mill);  // N_c = (30/pi) sqrt(g / R)
 double speed_rpm(const Mill& mill);
 double speed_fraction(const Mill& mill);
 
-// The wall's contact parameters with what was not given taken from between balls.
-Contact wall_contact(const Contact& contact);
+// The contact parameters in force: friction at this mill speed, the effect wall_friction; at the wall, what was not
+// given is taken from between balls.
+Contact ball_contact(const Config& config);
+Contact wall_contact(const Config& config);
 
 // Number of balls of each class: by `count`, or the number whose disc area comes nearest to `filling`; classes by
 // largest remainder of the shares.

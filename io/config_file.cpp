@@ -1,6 +1,7 @@
 #include "io/config_file.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <toml++/toml.h>
 
 #include <algorithm>
@@ -14,6 +15,7 @@
 #include <sstream>
 #include <system_error>
 
+#include "core/effects.h"
 #include "core/error.h"
 #include "core/units.h"
 #include "io/config_keys.h"
@@ -23,13 +25,10 @@ namespace {
 
 constexpr std::uintmax_t kLargestFile = 1 << 20;  // [bytes]; a config is a page, anything near this is a mistake
 
-// Parts of the format that this version does not know, so that a file for a later one is refused by name.
-constexpr std::array kLaterProfiles{"wave", "polygon", "swivel"};
-constexpr std::array kLaterKeys{"mill.lifters.points"};
-constexpr std::array kProfiles{LifterProfile::kNone, LifterProfile::kRectangle, LifterProfile::kTriangle,
-                               LifterProfile::kTrapezoid};
-constexpr std::array kLaws{ContactLaw::kLinear};
-constexpr std::array kLaterLaws{"hertz"};
+constexpr std::array kProfiles{LifterProfile::kNone,      LifterProfile::kRectangle, LifterProfile::kTriangle,
+                               LifterProfile::kTrapezoid, LifterProfile::kWave,      LifterProfile::kPolygon,
+                               LifterProfile::kSwivel};
+constexpr std::array kLaws{ContactLaw::kLinear, ContactLaw::kHertz};
 const std::vector<std::string> kBallKeys{"radius", "mass", "density", "share"};
 
 std::string one_line(std::string_view text) {
@@ -67,11 +66,6 @@ std::string found(const toml::node& node) {
   return article(node.type());
 }
 
-template <std::size_t N>
-bool listed(const std::array<const char*, N>& names, const std::string& name) {
-  return std::any_of(names.begin(), names.end(), [&](const char* n) { return name == n; });
-}
-
 std::string joined(const std::vector<std::string>& names) {
   std::string text;
   for (const auto& n : names) text += (text.empty() ? "" : ", ") + n;
@@ -94,9 +88,7 @@ class Reader {
   }
 
   void read_node(const std::string& path, const toml::node& node) {
-    if (path == "effects") return refuse_effects(node);
-    if (path.starts_with("effects."))
-      fail(node, path, "effects are not in this version; available: none, remove this key");
+    if (path == "effects" || path.starts_with("effects.")) return read_effects(path, node);
     if (is_section(path)) {
       if (!node.is_table()) fail(node, path, "found " + found(node) + ", must be a table: [" + path + "]");
       return read_table(path, *node.as_table());
@@ -123,18 +115,52 @@ class Reader {
   }
 
   [[noreturn]] void refuse_unknown(const std::string& path, const toml::node& node) const {
-    if (listed(kLaterKeys, path)) fail(node, path, "not in this version; remove it");
     if (node.is_table()) fail(node, path, "unknown table; did you mean [" + nearest_section(path) + "]?");
     fail(node, path, "unknown key; did you mean " + nearest_key(path) + "?");
   }
 
-  void refuse_effects(const toml::node& node) const {
-    const auto* table = node.as_table();
-    if (table && table->empty()) return;
-    if (!table) fail(node, "effects", "found " + found(node) + ", must be tables [effects.NAME]");
-    const auto first = table->cbegin();
-    fail(first->second, "effects." + std::string(first->first.str()),
-         "effects are not in this version; available: none, remove the table");
+  // "effects", "effects.NAME" or "effects.NAME.PARAMETER"
+  void read_effects(const std::string& path, const toml::node& node) {
+    const auto dot = path.find('.'), second = dot == std::string::npos ? dot : path.find('.', dot + 1);
+    if (second == std::string::npos) {
+      const auto* table = node.as_table();
+      if (!table) fail(node, path, "found " + found(node) + ", must be a table such as [effects.rolling_resistance]");
+      if (dot != std::string::npos) config_.effects[effect_of(path.substr(dot + 1), node).name];
+      if (dot != std::string::npos) config_.origin[path] = place(node);
+      for (const auto& [name, child] : *table) read_effects(path + "." + std::string(name.str()), child);
+      return;
+    }
+    const Effect& effect = effect_of(path.substr(dot + 1, second - dot - 1), node);
+    const std::string name = path.substr(second + 1);
+    const EffectParameter* parameter = find_parameter(effect, name);
+    if (!parameter) {
+      std::vector<std::string> known;
+      for (const EffectParameter& p : effect.parameters) known.emplace_back(p.name);
+      fail(node, path, "unknown key; did you mean " + nearest_word(name, known) + "? known: " + joined(known));
+    }
+    const std::string unit = *parameter->unit ? std::string(" in ") + parameter->unit : "";
+    const std::string wanted = fmt::format("a {}{}, {:g} to {:g}", parameter->whole ? "whole number" : "number", unit,
+                                           parameter->least, parameter->most);
+    std::vector<double> values;
+    if (parameter->list) {
+      const auto* list = node.as_array();
+      if (!list) fail(node, path, "found " + found(node) + ", must be a list of lifter numbers such as [0, 3]");
+      for (const toml::node& entry : *list) values.push_back(number(path, "lifter numbers such as [0, 3]", entry));
+      std::sort(values.begin(), values.end());
+      values.erase(std::unique(values.begin(), values.end()), values.end());
+    } else {
+      values.push_back(number(path, wanted, node));
+    }
+    config_.effects[effect.name][name] = std::move(values);
+    config_.origin[path] = place(node);
+  }
+
+  const Effect& effect_of(const std::string& name, const toml::node& node) const {
+    if (const Effect* effect = find_effect(name)) return *effect;
+    std::vector<std::string> known;
+    for (const Effect& e : all_effects()) known.emplace_back(e.name);
+    fail(node, "effects." + name,
+         "no such effect; did you mean " + nearest_word(name, known) + "? `tumble effects` lists what there is");
   }
 
   // One table that gives a thing in both ways contradicts itself, whatever the order of its keys.
@@ -183,23 +209,20 @@ class Reader {
     field(config_) = static_cast<std::uint64_t>(value);
   }
   void read(const Key& key, LifterProfile& (*field)(Config&), const toml::node& node) {
-    field(config_) = choice(key, kProfiles, kLaterProfiles, node);
+    field(config_) = choice(key, kProfiles, node);
   }
   void read(const Key& key, ContactLaw& (*field)(Config&), const toml::node& node) {
-    field(config_) = choice(key, kLaws, kLaterLaws, node);
+    field(config_) = choice(key, kLaws, node);
   }
 
-  template <typename T, std::size_t N, std::size_t M>
-  T choice(const Key& key, const std::array<T, N>& values, const std::array<const char*, M>& later,
-           const toml::node& node) const {
+  template <typename T, std::size_t N>
+  T choice(const Key& key, const std::array<T, N>& values, const toml::node& node) const {
     std::vector<std::string> names;
     for (const T value : values) names.emplace_back(name_of(value));
     if (!node.is_string()) fail(node, key.path, "found " + found(node) + ", must be one of " + joined(names));
     const std::string& name = node.as_string()->get();
     for (const T value : values)
       if (name == name_of(value)) return value;
-    if (listed(later, name))
-      fail(node, key.path, "\"" + name + "\" is not in this version; available: " + joined(names));
     fail(node, key.path,
          "found " + found(node) + ", did you mean \"" + nearest_word(name, names) + "\"? available: " + joined(names));
   }
@@ -221,6 +244,20 @@ class Reader {
       balls.push_back(read_ball(path, *entry.as_table()));
     }
     config_.charge.balls = std::move(balls);
+  }
+
+  void read(const Key& key, const PointList&, const toml::node& node) {
+    const auto* list = node.as_array();
+    if (!list) refuse(key, node);
+    std::vector<std::array<double, 2>> points;
+    for (const toml::node& entry : *list) {
+      const std::string path = fmt::format("{}[{}]", key.path, points.size());
+      const auto* pair = entry.as_array();
+      if (!pair || pair->size() != 2) fail(entry, path, "found " + found(entry) + ", must be [height, across] in m");
+      points.push_back(
+          {number(path, "[height, across] in m", *pair->get(0)), number(path, "[height, across] in m", *pair->get(1))});
+    }
+    config_.mill.lifters.points = std::move(points);
   }
 
   BallClass read_ball(const std::string& path, const toml::table& table) const {
@@ -334,6 +371,12 @@ struct Write {
     }
     return list.empty() ? "" : "[\n" + list + "]";
   }
+  std::string operator()(const PointList&) const {
+    std::string list;
+    for (const auto& [height, across] : config.mill.lifters.points)
+      list += fmt::format("{}[{}, {}]", list.empty() ? "" : ", ", height, across);
+    return list.empty() ? "" : "[" + list + "]";
+  }
   static std::string quoted(const char* name) { return std::string("\"") + name + "\""; }
 };
 
@@ -370,6 +413,13 @@ std::string to_toml(const Config& config) {
       section = of;
     }
     text += fmt::format("{} = {}\n", key.path.substr(of.size() + 1), value);
+  }
+  for (const auto& [name, settings] : config.effects) {
+    text += fmt::format("\n[effects.{}]\n", name);
+    for (const auto& [key, values] : settings) {
+      const bool list = find_parameter(*find_effect(name), key)->list;
+      text += fmt::format("{} = {}{}{}\n", key, list ? "[" : "", fmt::join(values, ", "), list ? "]" : "");
+    }
   }
   return text;
 }

@@ -16,12 +16,13 @@ struct AutoNumber {
   bool (*is_auto)(const Config&);
   void (*set_auto)(Config&, bool);
 };
-struct BallList {};  // charge.balls: an array of tables, read and written by its own code
+struct BallList {};   // charge.balls: an array of tables, read and written by its own code
+struct PointList {};  // mill.lifters.points: an array of pairs
 
 // How to reach the key's field in a Config.
 using Field =
     std::variant<double& (*)(Config&), int& (*)(Config&), std::optional<int>& (*)(Config&), std::uint64_t& (*)(Config&),
-                 LifterProfile& (*)(Config&), ContactLaw& (*)(Config&), AutoNumber, BallList>;
+                 LifterProfile& (*)(Config&), ContactLaw& (*)(Config&), AutoNumber, BallList, PointList>;
 
 struct Key {
   std::string path;    // "mill.lifters.height"

@@ -65,6 +65,12 @@ const char* adjective(LifterProfile profile) {
       return "triangular ";
     case LifterProfile::kTrapezoid:
       return "trapezoidal ";
+    case LifterProfile::kWave:
+      return "wave-shaped ";
+    case LifterProfile::kPolygon:
+      return "specially shaped ";
+    case LifterProfile::kSwivel:
+      return "swivel ";
     case LifterProfile::kNone:
       break;
   }

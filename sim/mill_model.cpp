@@ -38,8 +38,8 @@ double largest_time_step(const LinearSpringDashpot& law, double effective_mass) 
 MillModel make_mill_model(const Config& config) {
   MillModel model;
   model.shell = make_shell(make_mill_shape(config.mill));
-  model.ball = law_of(config.contact);
-  model.wall = law_of(wall_contact(config.contact));
+  model.ball = law_of(ball_contact(config));
+  model.wall = law_of(wall_contact(config));
   model.speed = rad_s_from_rpm(speed_rpm(config.mill));
   model.gravity = kGravity;
   if (!(model.speed > 0))

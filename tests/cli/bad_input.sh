@@ -51,8 +51,9 @@ with 's/time_step = "auto"/time_step = 1e-3/' wrong.toml && simulate 2 'wrong.to
 simulate 2 'mill.sped' mill.toml --set mill.sped=0.7
 simulate 2 'mill.speed' mill.toml --set mill.speed=fast
 simulate 2 'mill.speed' mill.toml --set mill.speed
-simulate 2 'hertz' mill.toml --set contact.law=hertz
-simulate 2 'effects' mill.toml --set effects.rolling_resistance.coefficient=0.05
+simulate 2 'hertz' mill.toml --set contact.law=herz
+simulate 2 'rolling_resistance' mill.toml --set effects.rolling_resistence.coefficient=0.05
+simulate 2 'rolling_resistance.coefficient' mill.toml --set effects.rolling_resistance.coefficient=-1
 
 # --- outputs
 refused 2 'nowhere' "" "$tumble" simulate mill.toml -o nowhere/run.h5

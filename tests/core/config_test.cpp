@@ -1,4 +1,5 @@
 #include "core/config.h"
+#include "core/effects.h"
 
 #include <gmock/gmock.h>
 
@@ -95,13 +96,48 @@ TEST(Config, AcceptsAFillingOfBallsWithoutARadius) {
 }
 
 TEST(Config, WallTakesTheBallsValuesUnlessItHasItsOwn) {
-  Contact contact;
-  contact.friction = 0.3;
-  contact.wall.restitution = 0.4;
-  const Contact wall = wall_contact(contact);
+  Config config = paper_mill();
+  config.contact.friction = 0.3;
+  config.contact.wall.friction = kNotGiven;
+  config.contact.wall.restitution = 0.4;
+  const Contact wall = wall_contact(config);
   EXPECT_EQ(wall.friction, 0.3);
   EXPECT_EQ(wall.restitution, 0.4);
-  EXPECT_EQ(wall.normal_stiffness, contact.normal_stiffness);
+  EXPECT_EQ(wall.normal_stiffness, config.contact.normal_stiffness);
+}
+
+TEST(Config, FrictionFallsLinearlyWithTheMillsSpeedAndNeverBelowZero) {
+  Config config = paper_mill();
+  config.contact.friction = 0.4;
+  config.contact.wall.friction = 0.2;
+  config.contact.friction_drop_at_critical = 0.5;
+  config.mill.speed = 0.8;
+  EXPECT_DOUBLE_EQ(ball_contact(config).friction, 0.4 * (1 - 0.5 * 0.8));
+  EXPECT_DOUBLE_EQ(wall_contact(config).friction, 0.2 * (1 - 0.5 * 0.8));
+  config.mill.speed = 2.5;
+  EXPECT_EQ(ball_contact(config).friction, 0);
+}
+
+TEST(Config, AnEffectOfStrengthZeroCountsAsAbsent) {
+  Config config = paper_mill();
+  config.effects["wall_friction"]["increase"] = {0};
+  EXPECT_FALSE(has_effect(config, "wall_friction"));
+  const double plain = wall_contact(config).friction;
+  config.effects["wall_friction"]["increase"] = {0.5};
+  EXPECT_TRUE(has_effect(config, "wall_friction"));
+  EXPECT_DOUBLE_EQ(wall_contact(config).friction, 1.5 * plain);
+}
+
+TEST(Config, RefusesEffectsOutOfRangeWithoutStrengthOrOfLiftersThatTheMillHasNot) {
+  const auto with = [](const char* effect, const char* key, double value) {
+    Config config = paper_mill();
+    config.effects[effect][key] = {value};
+    return complaint(config);
+  };
+  EXPECT_THAT(with("friction_weakening", "drop", 1.5), HasSubstr("effects.friction_weakening.drop"));
+  EXPECT_THAT(with("friction_weakening", "sliding_speed", 0.25), HasSubstr("has no strength; give drop"));
+  EXPECT_THAT(with("missing_lifters", "lifters", 18), HasSubstr("the mill's lifters are 0 to 17"));
+  EXPECT_THAT(with("speed_ripple", "order", 1.5), HasSubstr("must be whole"));
 }
 
 }  // namespace
