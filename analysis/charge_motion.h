@@ -1,5 +1,6 @@
 #pragma once
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 
@@ -15,6 +16,19 @@ using NextFrame = std::function<bool(Frame&)>;
 
 // Truth from a run's frames.
 ChargeMotion measure_frames(const RunSetup& setup, const NextFrame& next, const Progress& progress = {});
+
+// The same for a simulation that hands its frames out one by one and keeps none.
+class FrameMeasurer {
+ public:
+  explicit FrameMeasurer(const RunSetup& setup);
+  ~FrameMeasurer();
+  void add(const Frame& frame);
+  ChargeMotion finish();  // once
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
 
 struct FilmOptions {
   const Config* mill = nullptr;            // what is known of the mill (may be partial), or nothing

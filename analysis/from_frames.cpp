@@ -40,9 +40,19 @@ std::vector<TrackPoint> balls_of(const Frame& frame, const RunSetup& setup, int 
 
 }  // namespace
 
-ChargeMotion measure_frames(const RunSetup& setup, const NextFrame& next, const Progress& progress) {
-  const MillShape shape = make_mill_shape(setup.config.mill);
+struct FrameMeasurer::State {
+  State(const RunSetup& of, const MillShape& shape) : setup(of), statistics(geometry_of(of, shape)) {}
+
+  RunSetup setup;
+  ChargeStatistics statistics;
   ChargeMotion motion;
+  std::vector<double> torque, closure;
+};
+
+FrameMeasurer::FrameMeasurer(const RunSetup& setup) {
+  const MillShape shape = make_mill_shape(setup.config.mill);
+  state_ = std::make_unique<State>(setup, shape);
+  ChargeMotion& motion = state_->motion;
   motion.source = MotionSource::kRunFile;
   motion.rotation = Rotation::kCounterClockwise;
   motion.lifter_count = shape.lifter_count;
@@ -54,26 +64,38 @@ ChargeMotion measure_frames(const RunSetup& setup, const NextFrame& next, const 
   double area = 0;
   for (double r : setup.balls.radius) area += kPi * r * r;
   motion.filling = {area / (kSettledAreaShare * kPi * shape.radius * shape.radius), 0.0};
+}
 
-  ChargeStatistics statistics(geometry_of(setup, shape));
-  std::vector<double> torque, closure;
-  Frame frame;
-  while (next(frame)) {
-    statistics.add(motion.frames, frame.time, degrees(frame.mill_angle), balls_of(frame, setup, motion.frames));
-    const Observables& o = frame.observed;
-    if (!std::isnan(o.torque)) {
-      torque.push_back(o.torque);
-      motion.torque_series.push_back({frame.time, o.torque, o.power});
-    }
-    if (!std::isnan(o.torque_closure)) closure.push_back(o.torque_closure);
-    ++motion.frames;
-    if (setup.frame_count > 0)
-      report(progress, static_cast<double>(motion.frames) / static_cast<double>(setup.frame_count));
+FrameMeasurer::~FrameMeasurer() = default;
+
+void FrameMeasurer::add(const Frame& frame) {
+  State& s = *state_;
+  s.statistics.add(s.motion.frames, frame.time, degrees(frame.mill_angle), balls_of(frame, s.setup, s.motion.frames));
+  const Observables& o = frame.observed;
+  if (!std::isnan(o.torque)) {
+    s.torque.push_back(o.torque);
+    s.motion.torque_series.push_back({frame.time, o.torque, o.power});
   }
-  statistics.finish(motion);
-  motion.torque = mean_of_series(torque);
-  motion.torque_closure = mean_of_series(closure);
-  return motion;
+  if (!std::isnan(o.torque_closure)) s.closure.push_back(o.torque_closure);
+  ++s.motion.frames;
+}
+
+ChargeMotion FrameMeasurer::finish() {
+  State& s = *state_;
+  s.statistics.finish(s.motion);
+  s.motion.torque = mean_of_series(s.torque);
+  s.motion.torque_closure = mean_of_series(s.closure);
+  return std::move(s.motion);
+}
+
+ChargeMotion measure_frames(const RunSetup& setup, const NextFrame& next, const Progress& progress) {
+  FrameMeasurer measurer(setup);
+  Frame frame;
+  for (std::int64_t done = 1; next(frame); ++done) {
+    measurer.add(frame);
+    if (setup.frame_count > 0) report(progress, static_cast<double>(done) / static_cast<double>(setup.frame_count));
+  }
+  return measurer.finish();
 }
 
 }  // namespace tumble::analysis

@@ -391,6 +391,10 @@ Config parse_config(const std::string& toml, const std::string& name, const std:
   } catch (const toml::parse_error& e) {
     throw InputError(fmt::format("{}:{}", name, e.source().begin.line), "not valid TOML: " + one_line(e.description()));
   }
+  return with_sets(std::move(config), sets);
+}
+
+Config with_sets(Config config, const std::vector<std::string>& sets) {
   for (const std::string& assignment : sets) apply_set(config, assignment);
   check(config);
   return config;

@@ -13,6 +13,9 @@ namespace tumble::io {
 Config read_config(const std::filesystem::path& path, const std::vector<std::string>& sets = {});
 Config parse_config(const std::string& toml, const std::string& name, const std::vector<std::string>& sets = {});
 
+// The config with further assignments applied, in order: a campaign reads its MILL.toml once.
+Config with_sets(Config config, const std::vector<std::string>& sets);
+
 // The config as MILL.toml text with every key that is in force; parse_config gives the same config back, to the bit.
 std::string to_toml(const Config& config);
 
