@@ -57,19 +57,7 @@ void pair(ReferenceMill& mill, std::size_t i, std::size_t j) {
 void wall(ReferenceMill& mill, std::size_t i, int feature, double angle, double& torque, double& torque_shear) {
   Charge& c = mill.charge;
   const MillModel& m = mill.model;
-  double distance, nx, ny;
-  if (feature == 0) {
-    const double rho = std::sqrt(c.x[i] * c.x[i] + c.y[i] * c.y[i]);
-    distance = m.shell.radius - rho;
-    nx = c.x[i] / rho;
-    ny = c.y[i] / rho;
-  } else {
-    const Direction l = lifter_direction(m.shell, pose_of(angle), feature - 1);
-    const Nearest near = nearest_on_lifter(m.shell, c.x[i] * l.cos + c.y[i] * l.sin, c.y[i] * l.cos - c.x[i] * l.sin);
-    distance = near.distance;
-    nx = near.nx * l.cos - near.ny * l.sin;
-    ny = near.nx * l.sin + near.ny * l.cos;
-  }
+  const auto [distance, nx, ny, face] = nearest_on_wall(m.shell, pose_of(angle), feature, c.x[i], c.y[i]);
   const double px = c.x[i] + distance * nx, py = c.y[i] + distance * ny;
   const double vx = -m.speed * py - c.vx[i], vy = m.speed * px - c.vy[i];
   const double sliding = vy * nx - vx * ny - distance * c.spin[i];
@@ -78,10 +66,10 @@ void wall(ReferenceMill& mill, std::size_t i, int feature, double angle, double&
                   -(vx * nx + vy * ny) * m.time_step, sliding * m.time_step,
                   Damping(m.wall, m.time_step).of(c.mass[i])};
   const bool touches = distance < c.radius[i];
-  const Reaction r = feel(
-      m.wall, now, touches, m.time_step,
-      mill.with_feature[i * (static_cast<std::size_t>(m.shell.lifter_count) + 1) + static_cast<std::size_t>(feature)],
-      mill.ledger.dissipated[2], mill.ledger.dissipated[3]);
+  const Reaction r =
+      feel(m.wall, now, touches, m.time_step,
+           mill.with_feature[i * static_cast<std::size_t>(feature_count(m.shell)) + static_cast<std::size_t>(feature)],
+           mill.ledger.dissipated[2], mill.ledger.dissipated[3]);
   if (!touches) return;
   const double sx = r.tangential * ny, sy = -r.tangential * nx;
   const double fx = sx - r.normal * nx, fy = sy - r.normal * ny;
@@ -101,7 +89,7 @@ ReferenceMill make_reference_mill(const MillModel& model, Charge charge) {
     c.vy[i] += c.ay[i];
   }
   mill.with_ball.resize(c.size() * c.size());
-  mill.with_feature.resize(c.size() * (static_cast<std::size_t>(model.shell.lifter_count) + 1));
+  mill.with_feature.resize(c.size() * static_cast<std::size_t>(feature_count(model.shell)));
   return mill;
 }
 
@@ -120,7 +108,7 @@ void advance(ReferenceMill& mill) {
     for (std::size_t j = i + 1; j < c.size(); ++j) pair(mill, i, j);
   double torque = 0, torque_shear = 0;
   for (std::size_t i = 0; i < c.size(); ++i)
-    for (int feature = 0; feature <= mill.model.shell.lifter_count; ++feature)
+    for (int feature = 0; feature < feature_count(mill.model.shell); ++feature)
       wall(mill, i, feature, angle, torque, torque_shear);
   mill.ledger.torque += torque;
   mill.ledger.torque_shear += torque_shear;

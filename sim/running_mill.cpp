@@ -134,24 +134,8 @@ void wall_forces(RunningMill& mill, double angle) {
     const Contact& contact = list.contacts[k];
     const int i = contact.i;
     const double x = c.x[i], y = c.y[i];
-    double distance, nx, ny;  // from the ball's centre to the wall
-    if (contact.j == 0) {
-      const double clear = shell.radius - contact.reach, rho2 = x * x + y * y;
-      if (rho2 < 0.999999 * clear * clear && !list.touching[k]) continue;  // the distance decides, this only saves work
-      const double rho = std::sqrt(rho2);
-      distance = shell.radius - rho;
-      nx = x / rho;
-      ny = y / rho;
-    } else {
-      const Direction l = lifter_direction(shell, pose, contact.j - 1);
-      const double u = x * l.cos + y * l.sin, v = y * l.cos - x * l.sin;
-      const double du = u - shell.lifter_centre, span = contact.reach + shell.lifter_reach;
-      if (du * du + v * v > 1.000001 * span * span && !list.touching[k]) continue;
-      const Nearest near = nearest_on_lifter(shell, u, v);
-      distance = near.distance;
-      nx = near.nx * l.cos - near.ny * l.sin;
-      ny = near.nx * l.sin + near.ny * l.cos;
-    }
+    if (!list.touching[k] && !may_touch(shell, pose, contact.j, x, y, contact.reach)) continue;
+    const auto [distance, nx, ny, face] = nearest_on_wall(shell, pose, contact.j, x, y);
     const bool touches = distance < contact.reach;
     if (!touches && !list.touching[k]) continue;
 

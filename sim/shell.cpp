@@ -66,6 +66,16 @@ Nearest nearest_on_lifter(const Shell& shell, double x, double y) {
 
 ShellPose pose_of(double mill_angle) { return {std::cos(mill_angle), std::sin(mill_angle)}; }
 
+WallPoint nearest_on_wall(const Shell& shell, const ShellPose& pose, int feature, double x, double y) {
+  if (feature == 0) {
+    const double rho = std::sqrt(x * x + y * y);
+    return {shell.radius - rho, x / rho, y / rho, Face::kPlate};
+  }
+  const Direction l = lifter_direction(shell, pose, feature - 1);
+  const Nearest near = nearest_on_lifter(shell, x * l.cos + y * l.sin, y * l.cos - x * l.sin);
+  return {near.distance, near.nx * l.cos - near.ny * l.sin, near.nx * l.sin + near.ny * l.cos, Face::kTop};
+}
+
 void features_near(const Shell& shell, double mill_angle, double x, double y, double reach, std::vector<int>& out) {
   const double rho = std::hypot(x, y);
   if (rho + reach <= shell.tip_radius) return;

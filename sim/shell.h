@@ -49,6 +49,32 @@ inline Direction lifter_direction(const Shell& shell, const ShellPose& pose, int
   return {pose.cos * c - pose.sin * s, pose.sin * c + pose.cos * s};
 }
 
+// Number of features; they are 0 to this, less one.
+inline int feature_count(const Shell& shell) { return 1 + shell.lifter_count; }
+
+// The parts of a shell where impacts are counted apart: `leading` looks in the direction of rotation.
+enum class Face { kPlate, kLeading, kTop, kTrailing, kCount };
+
+// The nearest point of a feature as a ball's centre sees it, in the lab.
+struct WallPoint {
+  double distance = 0;    // from the centre [m]; < 0 for a centre inside the steel
+  double nx = 0, ny = 0;  // unit vector from the centre into the wall
+  Face face = Face::kPlate;
+};
+WallPoint nearest_on_wall(const Shell& shell, const ShellPose& pose, int feature, double x, double y);
+
+// Can a ball of this radius at (x, y) touch the feature? Cheap, and never wrongly no.
+inline bool may_touch(const Shell& shell, const ShellPose& pose, int feature, double x, double y, double radius) {
+  if (feature == 0) {
+    const double clear = shell.radius - radius;
+    return x * x + y * y >= 0.999999 * clear * clear;
+  }
+  const Direction l = lifter_direction(shell, pose, feature - 1);
+  const double du = x * l.cos + y * l.sin - shell.lifter_centre, v = y * l.cos - x * l.sin;
+  const double span = radius + shell.lifter_reach;
+  return du * du + v * v <= 1.000001 * span * span;
+}
+
 // Appends the features that are nearer than `reach` to the ball's centre (x, y), in ascending order.
 void features_near(const Shell& shell, double mill_angle, double x, double y, double reach, std::vector<int>& out);
 
