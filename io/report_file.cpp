@@ -121,10 +121,7 @@ std::string caveats_of(const RunReport& r) {
     add("The averages still drifted while they were taken: more spin-up is needed, or spin_up = \"auto\".");
   for (const auto& caveat : r.truth->caveats) add(caveat);
   for (const auto& caveat : r.film->caveats) add("Film: " + caveat);
-  if (all.empty()) return "";
-  std::string items;
-  for (const auto& text : all) items += "<li>" + escaped(text) + "</li>";
-  return R"(<section class="caveats"><h2>Before you believe the numbers</h2><ul>)" + items + "</ul></section>";
+  return caveats_html(all);
 }
 
 std::string key(const std::string& term, const std::string& value, const std::string& beside) {
@@ -353,9 +350,10 @@ void write_run_report(const fs::path& path, const RunReport& r) {
               {"rows", rows_of(*r.deviation)},
               {"facts", facts_of(r)},
               {"config", escaped(r.config_text)},
-              {"footer", "Written by tumble " + escaped(r.version) + ". This page needs no other file and no network."},
+              {"footer", footer_html(r.version)},
               {"data", script_json(data_of(r, spectrum))},
               {"uplot_js", std::string(uplot_js)},
+              {"plots_js", std::string(plots_js)},
               {"script", std::string(run_js)}}));
 }
 

@@ -4,8 +4,10 @@
 // Files that the build puts into the program (embed.cmake).
 namespace tumble::io::report {
 
-extern const std::string_view run_html;  // the page with {{places}} to fill
+extern const std::string_view run_html;  // pages with {{places}} to fill
+extern const std::string_view plots_html;
 extern const std::string_view style_css;
+extern const std::string_view plots_js;  // what all pages' plots share
 extern const std::string_view run_js;
 extern const std::string_view uplot_js;  // third_party/uplot
 extern const std::string_view uplot_css;

@@ -65,6 +65,17 @@ std::string script_json(const Json& json) {
   return out;
 }
 
+std::string caveats_html(const std::vector<std::string>& caveats) {
+  if (caveats.empty()) return "";
+  std::string items;
+  for (const auto& text : caveats) items += "<li>" + escaped(text) + "</li>";
+  return R"(<section class="caveats"><h2>Before you believe the numbers</h2><ul>)" + items + "</ul></section>";
+}
+
+std::string footer_html(const std::string& version) {
+  return "Written by tumble " + escaped(version) + ". This page needs no other file and no network.";
+}
+
 std::string base64(std::string_view bytes) {
   static constexpr char kDigits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
   std::string out;

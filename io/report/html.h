@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "core/statistics.h"
 
@@ -16,6 +17,10 @@ std::string escaped(const std::string& text);
 
 // JSON that can stand inside <script>: ASCII, and no "<", so nothing in it ends the element.
 std::string script_json(const Json& json);
+
+// What a reader must know first, as a box above the numbers; nothing where there is nothing. And the page's last line.
+std::string caveats_html(const std::vector<std::string>& caveats);
+std::string footer_html(const std::string& version);
 
 std::string base64(std::string_view bytes);
 

@@ -1,64 +1,7 @@
 "use strict";
 (() => {
   const data = JSON.parse(document.getElementById("data").textContent);
-  const root = getComputedStyle(document.documentElement);
-  const colour = name => () => root.getPropertyValue("--" + name).trim();
-  const ink = colour("ink"), soft = colour("soft"), grid = colour("grid"), truth = colour("truth"), found = colour("found");
-  const faint = of => () => of() + "22", pale = of => () => of() + "88";
-  const font = "12px system-ui, -apple-system, 'Segoe UI', Roboto, 'DejaVu Sans', sans-serif";
-  const digits = n => (u, v) => v == null ? "–" : v.toFixed(n);
-  const degree = v => ((v % 360) + 360) % 360;
-  const plots = [];
-
-  const axis = (label, more) => Object.assign(
-    { label, labelFont: font, font, stroke: soft, labelSize: 22, size: 46, grid: { stroke: grid, width: 1 }, ticks: { stroke: grid, width: 1 } }, more);
-  const line = (label, stroke, more) => Object.assign({ label, stroke, width: 1.6, points: { show: false }, spanGaps: true }, more);
-
-  // Upright lines at given places: toe and shoulder.
-  const uprights = lines => u => {
-    const c = u.ctx;
-    c.save();
-    for (const [x, stroke, dash] of lines) {
-      if (x == null || x < u.scales.x.min || x > u.scales.x.max) continue;
-      const at = u.valToPos(x, "x", true);
-      c.beginPath();
-      c.setLineDash(dash.map(d => d * devicePixelRatio));
-      c.lineWidth = 1.4 * devicePixelRatio;
-      c.strokeStyle = stroke();
-      c.moveTo(at, u.bbox.top);
-      c.lineTo(at, u.bbox.top + u.bbox.height);
-      c.stroke();
-    }
-    c.restore();
-  };
-
-  // A band between two heights, behind the lines.
-  const band = (low, high, stroke) => u => {
-    if (low == null) return;
-    const c = u.ctx, top = u.valToPos(high, "y", true), bottom = u.valToPos(low, "y", true);
-    c.save();
-    c.beginPath();
-    c.rect(u.bbox.left, u.bbox.top, u.bbox.width, u.bbox.height);
-    c.clip();
-    c.fillStyle = stroke() + "44";
-    c.fillRect(u.bbox.left, top, u.bbox.width, Math.max(bottom - top, 1));
-    c.fillStyle = stroke();
-    c.fillRect(u.bbox.left, (top + bottom) / 2 - devicePixelRatio / 2, u.bbox.width, devicePixelRatio);
-    c.restore();
-  };
-
-  const plot = (id, options, columns) => {
-    const place = document.getElementById(id);
-    if (!place || !columns[0].length) return null;
-    const size = () => ({ width: Math.max(place.clientWidth, 200), height: place.classList.contains("tall") ? 300 : 230 });
-    const u = new uPlot(Object.assign({ cursor: { y: false, points: { size: 6 } } }, size(), options), columns, place);
-    new ResizeObserver(() => u.setSize(size())).observe(place);
-    // On paper a plot keeps the size of its letters and takes the page's width.
-    addEventListener("beforeprint", () => u.setSize({ width: place.closest(".pair") ? 330 : 680, height: size().height }));
-    addEventListener("afterprint", () => u.setSize(size()));
-    plots.push(u);
-    return u;
-  };
+  const { ink, truth, found, faint, pale, digits, degree, axis, line, uprights, band, plot } = tumblePlots;
 
   // The charge lies across 3 o'clock: the axis begins where there is least of it.
   const start = data.occupancy.start;
@@ -137,7 +80,4 @@
     const bytes = Uint8Array.from(atob(film.src.split(",")[1]), c => c.charCodeAt(0));
     film.src = URL.createObjectURL(new Blob([bytes], { type: "video/mp4" }));
   });
-
-  const redraw = () => plots.forEach(u => u.redraw(false));
-  for (const query of ["(prefers-color-scheme: dark)", "print"]) matchMedia(query).addEventListener("change", redraw);
 })();

@@ -1,0 +1,234 @@
+"use strict";
+// What the pages' plots share: looks, sizes, marks beside uPlot's own, and drawAll() for the plots of io/plot_page.h.
+const tumblePlots = (() => {
+  const root = getComputedStyle(document.documentElement);
+  const colour = name => () => root.getPropertyValue("--" + name).trim();
+  const ink = colour("ink"), soft = colour("soft"), grid = colour("grid"), truth = colour("truth"), found = colour("found");
+  const faint = of => () => of() + "22", pale = of => () => of() + "88";
+  const palette = ["truth", "found", "blue", "green", "violet", "gold", "pink", "teal"];
+  const font = "12px system-ui, -apple-system, 'Segoe UI', Roboto, 'DejaVu Sans', sans-serif";
+  const digits = n => (u, v) => v == null ? "–" : v.toFixed(n);
+  const degree = v => ((v % 360) + 360) % 360;
+  const plots = [];
+
+  const axis = (label, more) => Object.assign(
+    { label, labelFont: font, font, stroke: soft, labelSize: 22, size: 46, grid: { stroke: grid, width: 1 }, ticks: { stroke: grid, width: 1 } }, more);
+  const line = (label, stroke, more) => Object.assign({ label, stroke, width: 1.6, points: { show: false }, spanGaps: true }, more);
+
+  // Draws inside the plot's frame only, and leaves the context as it was.
+  const inside = (u, draw) => {
+    const c = u.ctx;
+    c.save();
+    c.beginPath();
+    c.rect(u.bbox.left, u.bbox.top, u.bbox.width, u.bbox.height);
+    c.clip();
+    draw(c);
+    c.restore();
+  };
+
+  const letter = (c, text, x, y, align) => {
+    if (!text) return;
+    c.font = font.replace("12px", 12 * devicePixelRatio + "px");
+    c.textAlign = align;
+    c.fillText(text, x, y);
+  };
+
+  // Upright lines at given places: [x, stroke, dash, label].
+  const uprights = lines => u => inside(u, c => {
+    for (const [x, stroke, dash, label] of lines) {
+      if (x == null || x < u.scales.x.min || x > u.scales.x.max) continue;
+      const at = u.valToPos(x, "x", true), right = at > u.bbox.left + u.bbox.width / 2;
+      c.beginPath();
+      c.setLineDash(dash.map(d => d * devicePixelRatio));
+      c.lineWidth = 1.4 * devicePixelRatio;
+      c.strokeStyle = c.fillStyle = stroke();
+      c.moveTo(at, u.bbox.top);
+      c.lineTo(at, u.bbox.top + u.bbox.height);
+      c.stroke();
+      letter(c, label, at + (right ? -5 : 5) * devicePixelRatio, u.bbox.top + 14 * devicePixelRatio, right ? "right" : "left");
+    }
+  });
+
+  // A level band from low to high behind the lines, with a line at its middle.
+  const band = (low, high, stroke, label) => u => {
+    if (low == null) return;
+    inside(u, c => {
+      const top = u.valToPos(high, "y", true), bottom = u.valToPos(low, "y", true);
+      c.fillStyle = stroke() + "44";
+      c.fillRect(u.bbox.left, top, u.bbox.width, Math.max(bottom - top, 1));
+      c.fillStyle = stroke();
+      c.fillRect(u.bbox.left, (top + bottom) / 2 - devicePixelRatio / 2, u.bbox.width, devicePixelRatio);
+      letter(c, label, u.bbox.left + u.bbox.width - 5 * devicePixelRatio, top - 5 * devicePixelRatio, "right");
+    });
+  };
+
+  const plot = (id, options, columns) => {
+    const place = document.getElementById(id);
+    if (!place || !columns[0].length) return null;
+    const size = () => ({ width: Math.max(place.clientWidth, 200), height: place.classList.contains("tall") ? 300 : 230 });
+    const u = new uPlot(Object.assign({ cursor: { y: false, points: { size: 6 } } }, size(), options), columns, place);
+    new ResizeObserver(() => u.setSize(size())).observe(place);
+    // On paper a plot keeps the size of its letters and takes the page's width.
+    addEventListener("beforeprint", () => u.setSize({ width: place.closest(".pair") ? 330 : 680, height: size().height }));
+    addEventListener("afterprint", () => u.setSize(size()));
+    plots.push(u);
+    return u;
+  };
+
+  const redraw = () => plots.forEach(u => u.redraw(false));
+  for (const query of ["(prefers-color-scheme: dark)", "print"]) matchMedia(query).addEventListener("change", redraw);
+
+  // A number as a reader writes it, of at most n digits: 0.25, 1200, 4.5×10⁵.
+  const in_words = (v, n) => {
+    if (v == null) return "";
+    if (v == 0) return "0";
+    const size = Math.abs(v), minus = text => text.replace("-", "−");
+    if (size >= 1e-3 && size < 1e5) return minus(String(Number(v.toPrecision(n))));
+    const [front, power] = v.toExponential(n - 1).split("e");
+    const raised = power.replace("+", "").replace("-", "⁻").replace(/[0-9]/g, d => "⁰¹²³⁴⁵⁶⁷⁸⁹"[d]);
+    const digits = String(Number(front));
+    return minus(digits == "1" ? "10" : digits == "-1" ? "-10" : digits + "×10") + raised;
+  };
+
+  // One column of x for all series. Where a series has the same x several times, so has the column: uPlot.join would
+  // keep the last of them only. What a series does not have there is undefined, which is no gap in its line.
+  const aligned = series => {
+    const most = new Map();
+    for (const s of series) {
+      const here = new Map();
+      for (const x of s.x) here.set(x, (here.get(x) ?? 0) + 1);
+      for (const [x, count] of here) most.set(x, Math.max(most.get(x) ?? 0, count));
+    }
+    const x = [], first = new Map();
+    for (const value of [...most.keys()].sort((a, b) => a - b)) {
+      first.set(value, x.length);
+      for (let k = most.get(value); k > 0; --k) x.push(value);
+    }
+    return [x, ...series.map(s => {
+      const column = Array(x.length), used = new Map();
+      s.x.forEach((value, i) => {
+        const k = used.get(value) ?? 0;
+        used.set(value, k + 1);
+        column[first.get(value) + k] = s.y[i];
+      });
+      return column;
+    })];
+  };
+
+  // Standard errors: bars at points, a band round a line or steps.
+  const errors = (s, index, stroke) => u => inside(u, c => {
+    if (!s.low || !u.series[index].show) return;
+    const at = i => u.valToPos(s.x[i], "x", true), y = v => u.valToPos(v, "y", true);
+    if (s.mark == "points") {
+      c.strokeStyle = pale(stroke)();
+      c.lineWidth = 1.3 * devicePixelRatio;
+      const cap = 3 * devicePixelRatio;
+      s.x.forEach((_, i) => {
+        if (s.low[i] == null || s.high[i] == null) return;
+        const [x, low, high] = [at(i), y(s.low[i]), y(s.high[i])];
+        c.beginPath();
+        c.moveTo(x, low);
+        c.lineTo(x, high);
+        for (const end of [low, high]) {
+          c.moveTo(x - cap, end);
+          c.lineTo(x + cap, end);
+        }
+        c.stroke();
+      });
+      return;
+    }
+    c.fillStyle = stroke() + "33";
+    const stepped = s.mark == "steps";
+    for (let i = 0; i < s.x.length;) {
+      let end = i;
+      while (end < s.x.length && s.low[end] != null && s.high[end] != null) ++end;
+      const upper = [], lower = [];
+      for (let k = i; k < end; ++k) {
+        if (stepped && k > i) { upper.push([at(k), y(s.high[k - 1])]); lower.push([at(k), y(s.low[k - 1])]); }
+        upper.push([at(k), y(s.high[k])]);
+        lower.push([at(k), y(s.low[k])]);
+      }
+      if (upper.length > 1) {
+        c.beginPath();
+        for (const corner of [...upper, ...lower.reverse()]) c.lineTo(...corner);
+        c.fill();
+      }
+      i = Math.max(end, i + 1);
+    }
+  });
+
+  // The range of an axis: all that is drawn between `from` and `to`, a little more round it; decades' parts on a
+  // logarithmic axis.
+  const range_of = (log, values) => {
+    const seen = values.filter(v => v != null && (!log || v > 0));
+    let low = Math.min(...seen), high = Math.max(...seen);
+    if (!seen.length) [low, high] = log ? [1, 10] : [0, 1];
+    if (!log) return uPlot.rangeNum(low, high, 0.08, true);
+    const room = Math.max((high / low) ** 0.06, 1.08);
+    return [low / room, high * room];
+  };
+
+  const draw = spec => {
+    const stroke = spec.series.map(s => colour(palette[s.colour % palette.length]));
+    const xs = [...spec.series.flatMap(s => s.x), ...spec.upright.map(r => r.at)];
+    const heights = u => {
+      const [from, to] = [u.scales.x.min, u.scales.x.max], all = [];
+      spec.series.forEach((s, k) => {
+        if (!u.series[k + 1].show) return;
+        const near = s.x.map((x, i) => x >= from && x <= to || s.x[i + 1] >= from && x < from || s.x[i - 1] <= to && x > to);
+        for (const values of [s.y, s.low ?? [], s.high ?? []]) all.push(...values.filter((_, i) => near[i]));
+      });
+      for (const r of spec.level) all.push(r.at, r.low, r.high);
+      if (spec.y_from_zero) all.push(0);
+      return all;
+    };
+    // A logarithmic axis over many decades names the powers of ten alone, over fewer also steps between them.
+    const ticks = (log, key) => ({
+      values: (u, at) => at.map(v => v == null ? "" : in_words(v, 6)),
+      filter: log ? (u, at) => {
+        const decades = Math.log10(u.scales[key].max / u.scales[key].min);
+        const named = decades > 3 ? [1] : decades > 1.2 ? [1, 2, 5] : decades > 0.5 ? [1, 2, 3, 4, 5, 7] : [1, 2, 3, 4, 5, 6, 7, 8, 9];
+        return at.map(v => named.includes(Math.round(v / 10 ** Math.floor(Math.log10(v) + 1e-9))) ? v : null);
+      } : (u, at) => at,
+    });
+    const wide = (u, values, index, cycle) => {
+      if (cycle > 1) return u.axes[index]._size;
+      u.ctx.font = font.replace("12px", 12 * devicePixelRatio + "px");
+      return Math.ceil(20 + Math.max(0, ...(values ?? []).map(v => u.ctx.measureText(v).width)) / devicePixelRatio);
+    };
+    const columns = aligned(spec.series), first = columns[0][0], last = columns[0].at(-1);
+    const value = (u, v) => v == null ? "–" : in_words(v, 5);
+    return plot(spec.id, {
+      scales: {
+        x: { time: false, distr: spec.x_log ? 3 : 1, range: (u, low, high) => low == first && high == last || first == last ? range_of(spec.x_log, xs) : [low, high] },
+        y: { distr: spec.y_log ? 3 : 1, range: u => range_of(spec.y_log, heights(u)) },
+      },
+      axes: [axis(spec.x_label, Object.assign(ticks(spec.x_log, "x"), { space: 60 })), axis(spec.y_label, Object.assign(ticks(spec.y_log, "y"), { size: wide }))],
+      legend: { markers: { stroke: (u, i) => `var(--${palette[spec.series[i - 1].colour % palette.length]})`, fill: () => "transparent" } },
+      cursor: { y: false, points: { size: 6 }, dataIdx: nearest },
+      series: [{ label: spec.x_label, value }, ...spec.series.map((s, k) => s.mark == "points"
+        ? line(s.label, stroke[k], { value, width: 0, paths: () => null, points: { show: true, size: 7, width: 1.6, stroke: stroke[k], fill: colour("paper") } })
+        : line(s.label, stroke[k], { value, spanGaps: false, dash: s.dashed ? [6, 4] : [], ...(s.mark == "steps" ? { paths: uPlot.paths.stepped({ align: 1 }) } : {}) }))],
+      hooks: {
+        drawClear: [...spec.level.map(r => band(r.low ?? r.at, r.high ?? r.at, ink, r.label)),
+                    ...spec.series.map((s, k) => errors(s, k + 1, stroke[k]))],
+        draw: [uprights(spec.upright.map(r => [r.at, ink, [4, 4], r.label]))],
+      },
+    }, columns);
+  };
+
+  // Where a series has nothing under the cursor, what it has next to it within 20 pixels.
+  const nearest = (u, k, i, x) => {
+    const column = u.data[k], at = u.data[0];
+    if (k == 0 || column[i] != null) return i;
+    let low = i, high = i;
+    while (low >= 0 && column[low] == null) --low;
+    while (high < column.length && column[high] == null) ++high;
+    const away = j => j < 0 || j >= column.length ? Infinity : Math.abs(u.valToPos(at[j], "x") - u.valToPos(x, "x"));
+    const best = away(low) <= away(high) ? low : high;
+    return away(best) <= 20 ? best : i;
+  };
+
+  const drawAll = specs => specs.map(draw);
+  return { ink, soft, grid, truth, found, faint, pale, digits, degree, axis, line, uprights, band, plot, drawAll };
+})();
