@@ -50,7 +50,7 @@ const tumblePlots = (() => {
   });
 
   // A level band from low to high behind the lines, with a line at its middle.
-  const band = (low, high, stroke, label) => u => {
+  const band = (low, high, stroke) => u => {
     if (low == null) return;
     inside(u, c => {
       const top = u.valToPos(high, "y", true), bottom = u.valToPos(low, "y", true);
@@ -58,7 +58,16 @@ const tumblePlots = (() => {
       c.fillRect(u.bbox.left, top, u.bbox.width, Math.max(bottom - top, 1));
       c.fillStyle = stroke();
       c.fillRect(u.bbox.left, (top + bottom) / 2 - devicePixelRatio / 2, u.bbox.width, devicePixelRatio);
-      letter(c, label, u.bbox.left + u.bbox.width - 5 * devicePixelRatio, top - 5 * devicePixelRatio, "right");
+    });
+  };
+
+  // The same upright.
+  const upright_band = (low, high, stroke) => u => {
+    if (low == null) return;
+    inside(u, c => {
+      const left = u.valToPos(low, "x", true);
+      c.fillStyle = stroke() + "44";
+      c.fillRect(left, u.bbox.top, u.valToPos(high, "x", true) - left, u.bbox.height);
     });
   };
 
@@ -157,22 +166,47 @@ const tumblePlots = (() => {
     }
   });
 
-  // The range of an axis: all that is drawn between `from` and `to`, a little more round it; decades' parts on a
-  // logarithmic axis.
+  // The range of an axis: all that it shows, and a little more round it.
   const range_of = (log, values) => {
     const seen = values.filter(v => v != null && (!log || v > 0));
-    let low = Math.min(...seen), high = Math.max(...seen);
-    if (!seen.length) [low, high] = log ? [1, 10] : [0, 1];
-    if (!log) return uPlot.rangeNum(low, high, 0.08, true);
-    const room = Math.max((high / low) ** 0.06, 1.08);
-    return [low / room, high * room];
+    if (!seen.length) return log ? [1, 10] : [0, 1];
+    const low = seen.reduce((a, b) => Math.min(a, b)), high = seen.reduce((a, b) => Math.max(a, b));
+    if (log) {
+      const room = Math.max((high / low) ** 0.06, 1.08);
+      return [low / room, high * room];
+    }
+    const room = 0.07 * (high - low || Math.abs(high) || 1);
+    return [low >= 0 && low < room ? 0 : low - room, high <= 0 && high > -room ? 0 : high + room];
+  };
+
+  // Over many decades powers of ten alone, over few also steps between them, within half a decade round steps.
+  const log_ticks = (u, index, low, high) => {
+    const decades = Math.log10(high / low), first = Math.floor(Math.log10(low)), out = [];
+    const room = index == 0 ? u.over.clientWidth / 55 : u.over.clientHeight / 22;
+    if (decades < 0.6) {
+      const rough = (high - low) / 5, size = 10 ** Math.floor(Math.log10(rough));
+      const step = [1, 2, 5, 10].find(k => k * size >= rough) * size;
+      for (let k = Math.ceil(low / step); k * step <= high; ++k) out.push(k * step);
+      return out;
+    }
+    const every = Math.max(1, Math.ceil(decades / room));
+    const named = decades > room / 3 ? [1] : decades > 1.5 ? [1, 2, 5] : [1, 2, 3, 5, 7];
+    for (let n = first; n <= Math.log10(high); ++n)
+      if (n % every == 0) for (const k of named) if (k * 10 ** n >= low && k * 10 ** n <= high) out.push(k * 10 ** n);
+    return out;
   };
 
   const draw = spec => {
     const stroke = spec.series.map(s => colour(palette[s.colour % palette.length]));
-    const xs = [...spec.series.flatMap(s => s.x), ...spec.upright.map(r => r.at)];
+    const xs = [...spec.series.flatMap(s => s.x), ...spec.upright.flatMap(r => [r.at, r.low, r.high])];
+    // uPlot asks for the range of x first, and sets its scales when it has all of them.
+    let from = -Infinity, to = Infinity;
+    const window = (low, high) => {
+      [from, to] = low == first && high == last || first == last ? range_of(spec.x_log, xs) : [low, high];
+      return [from, to];
+    };
     const heights = u => {
-      const [from, to] = [u.scales.x.min, u.scales.x.max], all = [];
+      const all = [];
       spec.series.forEach((s, k) => {
         if (!u.series[k + 1].show) return;
         const near = s.x.map((x, i) => x >= from && x <= to || s.x[i + 1] >= from && x < from || s.x[i - 1] <= to && x > to);
@@ -182,15 +216,8 @@ const tumblePlots = (() => {
       if (spec.y_from_zero) all.push(0);
       return all;
     };
-    // A logarithmic axis over many decades names the powers of ten alone, over fewer also steps between them.
-    const ticks = (log, key) => ({
-      values: (u, at) => at.map(v => v == null ? "" : in_words(v, 6)),
-      filter: log ? (u, at) => {
-        const decades = Math.log10(u.scales[key].max / u.scales[key].min);
-        const named = decades > 3 ? [1] : decades > 1.2 ? [1, 2, 5] : decades > 0.5 ? [1, 2, 3, 4, 5, 7] : [1, 2, 3, 4, 5, 6, 7, 8, 9];
-        return at.map(v => named.includes(Math.round(v / 10 ** Math.floor(Math.log10(v) + 1e-9))) ? v : null);
-      } : (u, at) => at,
-    });
+    const values = (u, at) => at.map(v => in_words(v, 6));
+    const ticks = log => log ? { values, splits: log_ticks, filter: (u, at) => at } : { values };
     const wide = (u, values, index, cycle) => {
       if (cycle > 1) return u.axes[index]._size;
       u.ctx.font = font.replace("12px", 12 * devicePixelRatio + "px");
@@ -200,22 +227,30 @@ const tumblePlots = (() => {
     const value = (u, v) => v == null ? "–" : in_words(v, 5);
     return plot(spec.id, {
       scales: {
-        x: { time: false, distr: spec.x_log ? 3 : 1, range: (u, low, high) => low == first && high == last || first == last ? range_of(spec.x_log, xs) : [low, high] },
+        x: { time: false, distr: spec.x_log ? 3 : 1, range: (u, low, high) => window(low, high) },
         y: { distr: spec.y_log ? 3 : 1, range: u => range_of(spec.y_log, heights(u)) },
       },
-      axes: [axis(spec.x_label, Object.assign(ticks(spec.x_log, "x"), { space: 60 })), axis(spec.y_label, Object.assign(ticks(spec.y_log, "y"), { size: wide }))],
+      axes: [axis(spec.x_label, Object.assign(ticks(spec.x_log), { space: 60 })), axis(spec.y_label, Object.assign(ticks(spec.y_log), { size: wide }))],
       legend: { markers: { stroke: (u, i) => `var(--${palette[spec.series[i - 1].colour % palette.length]})`, fill: () => "transparent" } },
       cursor: { y: false, points: { size: 6 }, dataIdx: nearest },
       series: [{ label: spec.x_label, value }, ...spec.series.map((s, k) => s.mark == "points"
         ? line(s.label, stroke[k], { value, width: 0, paths: () => null, points: { show: true, size: 7, width: 1.6, stroke: stroke[k], fill: colour("paper") } })
         : line(s.label, stroke[k], { value, spanGaps: false, dash: s.dashed ? [6, 4] : [], ...(s.mark == "steps" ? { paths: uPlot.paths.stepped({ align: 1 }) } : {}) }))],
       hooks: {
-        drawClear: [...spec.level.map(r => band(r.low ?? r.at, r.high ?? r.at, ink, r.label)),
+        drawClear: [...spec.upright.map(r => upright_band(r.low, r.high, soft)),
+                    ...spec.level.map(r => band(r.low ?? r.at, r.high ?? r.at, soft)),
                     ...spec.series.map((s, k) => errors(s, k + 1, stroke[k]))],
-        draw: [uprights(spec.upright.map(r => [r.at, ink, [4, 4], r.label]))],
+        draw: [uprights(spec.upright.map(r => [r.at, ink, [4, 4], r.label])), levels(spec.level)],
       },
     }, columns);
   };
+
+  // The names of level lines, written above them.
+  const levels = rules => u => inside(u, c => {
+    c.fillStyle = ink();
+    for (const r of rules)
+      letter(c, r.label, u.bbox.left + u.bbox.width - 5 * devicePixelRatio, u.valToPos(r.high ?? r.at, "y", true) - 5 * devicePixelRatio, "right");
+  });
 
   // Where a series has nothing under the cursor, what it has next to it within 20 pixels.
   const nearest = (u, k, i, x) => {
