@@ -8,5 +8,6 @@ void add_run(CLI::App& app);
 void add_simulate(CLI::App& app);
 void add_render(CLI::App& app);
 void add_analyse(CLI::App& app);
+void add_sweep(CLI::App& app);
 
 }  // namespace tumble::cli

@@ -74,4 +74,29 @@ double drift_z(std::span<const double> series) {
   return difference == 0 ? 0 : std::copysign(INFINITY, difference);
 }
 
+Estimate mean_of_repeats(std::span<const Estimate> repeats, bool are_directions) {
+  if (repeats.empty()) return {};
+  if (repeats.size() == 1) return repeats.front();
+  const double n = double(repeats.size());
+  std::vector<double> x;
+  for (const Estimate& e : repeats) x.push_back(e.value);
+  double origin = 0;
+  if (are_directions) {
+    double c = 0, s = 0;
+    for (const double d : x) c += std::cos(radians(d)), s += std::sin(radians(d));
+    origin = degrees(std::atan2(s, c));
+    for (double& d : x) d = wrap_180(d - origin);
+  }
+  const double mean = average(x);
+  double sum = 0;
+  for (const double d : x) sum += (d - mean) * (d - mean);
+  return {are_directions ? wrap_360(origin + mean) : mean, std::sqrt(sum / (n - 1) / n)};
+}
+
+double se_within_repeats(std::span<const Estimate> repeats) {
+  double sum = 0;
+  for (const Estimate& e : repeats) sum += e.se * e.se;
+  return repeats.empty() ? kNotGiven : std::sqrt(sum) / double(repeats.size());
+}
+
 }  // namespace tumble

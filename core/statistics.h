@@ -22,4 +22,10 @@ Estimate mean_direction(std::span<const double> directions_deg);
 // How many standard errors the second half's mean lies from the first half's, correlation allowed for.
 double drift_z(std::span<const double> series);
 
+// Mean of independent repeats, by their values alone; the standard error is from their scatter, or what the one repeat
+// says of itself. Directions as in mean_direction.
+Estimate mean_of_repeats(std::span<const Estimate> repeats, bool are_directions = false);
+// The same mean's standard error from what the repeats say of themselves: near the other one where both are right.
+double se_within_repeats(std::span<const Estimate> repeats);
+
 }  // namespace tumble

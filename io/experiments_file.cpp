@@ -14,6 +14,7 @@
 #include "core/error.h"
 #include "io/config_file.h"
 #include "io/config_keys.h"
+#include "io/csv_file.h"
 
 namespace tumble::io {
 namespace fs = std::filesystem;
@@ -263,6 +264,48 @@ Experiments read_experiments(const fs::path& path) {
     throw InputError(path.string(),
                      "is larger than 4 MiB, so hardly an EXPERIMENTS.toml; data go into files of their own");
   return parse_experiments(text, path.string(), path.parent_path());
+}
+
+Experiments read_measured(const fs::path& path) {
+  if (path.extension() != ".csv") return read_experiments(path);
+  const CsvTable table = read_csv(path);
+  std::vector<std::string> known{"name", "hold_out"};
+  for (const ScalarDatum& d : kScalarData) {
+    known.emplace_back(d.name);
+    known.push_back(uncertainty_name(d.name));
+  }
+  std::vector<std::string> keys;  // a dot tells a key of MILL.toml
+  for (const std::string& column : table.columns())
+    if (column.find('.') != std::string::npos) keys.push_back(column);
+  known.insert(known.end(), keys.begin(), keys.end());
+  table.check_columns(known);
+
+  Experiments all;
+  all.file = path.string();
+  all.list.resize(table.rows());
+  const auto names = table.texts("name", true), hold_out = table.texts("hold_out", true);
+  for (std::size_t i = 0; i < all.list.size(); ++i) {
+    Experiment& e = all.list[i];
+    e.name = names[i].empty() ? fmt::format("row {}", i + 1) : names[i];
+    e.place = fmt::format("{}: {}", table.place(), e.name);
+    e.hold_out = hold_out[i] == "true";
+    if (!e.hold_out && !hold_out[i].empty() && hold_out[i] != "false")
+      throw InputError(table.place(i, "hold_out"), "is \"" + hold_out[i] + "\"; give true or false");
+  }
+  for (const std::string& key : keys) {
+    const auto values = table.texts(key, true);
+    for (std::size_t i = 0; i < all.list.size(); ++i)
+      if (!values[i].empty()) all.list[i].sets.emplace_back(key, values[i]);
+  }
+  for (const ScalarDatum& d : kScalarData) {
+    const auto values = table.numbers(d.name, true), sds = table.numbers(uncertainty_name(d.name), true);
+    for (std::size_t i = 0; i < all.list.size(); ++i) {
+      all.list[i].*d.measured = {values[i], sds[i]};
+      if (!std::isnan(sds[i]) && !(sds[i] > 0))
+        throw InputError(table.place(i, uncertainty_name(d.name)), "must be > 0");
+    }
+  }
+  return all;
 }
 
 Config config_of(const Config& mill, const Experiment& experiment, const std::vector<std::string>& more) {
