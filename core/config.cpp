@@ -256,7 +256,6 @@ Contact wall_contact(const Config& config) {
   c.friction = or_else(contact.wall.friction, contact.friction);
   c.restitution = or_else(contact.wall.restitution, contact.restitution);
   c.friction *= std::max(0.0, 1 - c.friction_drop_at_critical * speed_fraction(config.mill));
-  if (has_effect(config, "wall_friction")) c.friction *= 1 + effect_value(config, "wall_friction", "increase");
   return c;
 }
 

@@ -108,8 +108,7 @@ double critical_speed_rpm(const Mill& mill);  // N_c = (30/pi) sqrt(g / R)
 double speed_rpm(const Mill& mill);
 double speed_fraction(const Mill& mill);
 
-// The contact parameters in force: friction at this mill speed, the effect wall_friction; at the wall, what was not
-// given is taken from between balls.
+// The contact parameters in force at this mill speed; at the wall, what was not given is taken from between balls.
 Contact ball_contact(const Config& config);
 Contact wall_contact(const Config& config);
 

@@ -91,10 +91,8 @@ struct RunReader::Impl {
     result.spin_up_revolutions = hdf5::read_scalar<double>(file, "parameters/spin_up_revolutions");
     result.steady = hdf5::read_scalar<std::int64_t>(file, "parameters/steady") != 0;
     result.caveat = hdf5::read_string(file, "parameters/caveat");
-    const auto spectrum = [&](const char* name) {
-      return hdf5::read_array<double>(file, std::string("observables/impact_spectrum/") + name, kSpectrumBins + 1);
-    };
-    result.spectrum = {spectrum("edges"), spectrum("ball_ball"), spectrum("ball_wall")};
+    for (const ResultArray& array : all_result_arrays())
+      array.of(result) = hdf5::read_array<double>(file, array.path, array.space);
   }
 
   Frame without_balls(std::size_t index) const {

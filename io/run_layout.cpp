@@ -10,7 +10,54 @@ double& reach(Frame& frame) {
 template <auto Member>
 constexpr auto kObserved = &reach<&Frame::observed, Member>;
 
+template <auto... Members>
+std::vector<double>& reach_array(RunResult& result) {
+  return (result.*....*Members);
+}
+// A face's row of the impact places.
+template <auto Rows, std::size_t Face>
+std::vector<double>& reach_face(RunResult& result) {
+  return (result.places.*Rows)[Face];
+}
+
+constexpr std::size_t kBinsSpace = 257;     // of a spectrum or a histogram, edges included
+constexpr std::size_t kLifterSpace = 1024;  // lifters whose own impacts are kept
+
+std::vector<ResultArray> make_result_arrays() {
+  using R = RunResult;
+  using I = ImpactSpectrum;
+  using P = ImpactPlaces;
+  const std::string spectrum = "observables/impact_spectrum/", falls = "observables/fall_heights/",
+                    places = "observables/impact_places/";
+  std::vector<ResultArray> arrays{
+      {spectrum + "edges", "J", kBinsSpace, &reach_array<&R::spectrum, &I::edges_J>},
+      {spectrum + "ball_ball", "s-1", kBinsSpace, &reach_array<&R::spectrum, &I::ball_ball>},
+      {spectrum + "ball_ball_normal", "s-1", kBinsSpace, &reach_array<&R::spectrum, &I::ball_ball_normal>},
+      {spectrum + "ball_ball_tangential", "s-1", kBinsSpace, &reach_array<&R::spectrum, &I::ball_ball_tangential>},
+      {spectrum + "ball_wall", "s-1", kBinsSpace, &reach_array<&R::spectrum, &I::ball_wall>},
+      {spectrum + "ball_wall_normal", "s-1", kBinsSpace, &reach_array<&R::spectrum, &I::ball_wall_normal>},
+      {spectrum + "ball_wall_tangential", "s-1", kBinsSpace, &reach_array<&R::spectrum, &I::ball_wall_tangential>},
+      {falls + "edges", "m", kBinsSpace, &reach_array<&R::falls, &FallHeights::edges>},
+      {falls + "frequency", "s-1", kBinsSpace, &reach_array<&R::falls, &FallHeights::frequency>},
+      {places + "angle_edges", "deg", kBinsSpace, &reach_array<&R::places, &P::angle_edges_deg>},
+      {places + "lifter_frequency", "s-1", kLifterSpace, &reach_array<&R::places, &P::lifter_frequency>},
+      {places + "lifter_power", "W", kLifterSpace, &reach_array<&R::places, &P::lifter_power>},
+  };
+  const auto add_faces = [&]<std::size_t... Face>(std::index_sequence<Face...>) {
+    (arrays.push_back({places + kFaceNames[Face] + "_frequency", "s-1", kBinsSpace, &reach_face<&P::frequency, Face>}),
+     ...);
+    (arrays.push_back({places + kFaceNames[Face] + "_power", "W", kBinsSpace, &reach_face<&P::power, Face>}), ...);
+  };
+  add_faces(std::make_index_sequence<kFaceNames.size()>());
+  return arrays;
+}
+
 }  // namespace
+
+std::span<const ResultArray> all_result_arrays() {
+  static const std::vector<ResultArray> arrays = make_result_arrays();
+  return arrays;
+}
 
 std::span<const Series> all_series() {
   using O = Observables;
@@ -18,6 +65,7 @@ std::span<const Series> all_series() {
       Series{"observables/torque", "N m", kObserved<&O::torque>},
       Series{"observables/torque_shear", "N m", kObserved<&O::torque_shear>},
       Series{"observables/torque_closure", "N m", kObserved<&O::torque_closure>},
+      Series{"observables/torque_external", "N m", kObserved<&O::torque_external>},
       Series{"observables/power", "W", kObserved<&O::power>},
       Series{"observables/mill_angle", "rad", &reach<&Frame::mill_angle>},
       Series{"observables/energy/kinetic", "J", kObserved<&O::kinetic>},

@@ -12,8 +12,7 @@
 // Names and places in RUN.h5 (docs/run-file.md), shared by its writer and its reader.
 namespace tumble::io::run_layout {
 
-inline constexpr int kFormat = 1;                     // grows when an older reader could not read the file
-inline constexpr std::size_t kSpectrumBins = 256;     // space for an impact spectrum
+inline constexpr int kFormat = 2;                     // grows when an older reader could not read the file
 inline constexpr std::size_t kCaveatCapacity = 4096;  // [bytes]
 
 // A dataset: the library reads past its memory where a foreign file's attributes are damaged, so nothing is read from
@@ -44,6 +43,18 @@ struct BallArray {
   std::size_t components() const { return second ? 2 : 1; }
 };
 std::span<const BallArray> all_ball_arrays();
+
+// An array of the whole run, known at its end.
+struct ResultArray {
+  std::string path;
+  const char* unit;
+  std::size_t space;  // set aside [numbers]
+  std::vector<double>& (*of)(RunResult&);
+};
+std::span<const ResultArray> all_result_arrays();
+inline const std::vector<double>& values(const ResultArray& array, const RunResult& result) {
+  return array.of(const_cast<RunResult&>(result));
+}
 
 std::string dissipation_path(const std::string& cause);
 

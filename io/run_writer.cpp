@@ -75,25 +75,21 @@ void lay_out_element(hid_t file, const std::string& path, hid_t type, const hdf5
   }
 }
 
-// An impact spectrum's arrays get their true length at the end, within the one chunk that is set aside for each: then
+// The arrays of the result get their true length at the end, within the one chunk that is set aside for each: then
 // only a number in the dataset's own header changes, in one write, and a file that is cut off there stays whole.
-void lay_out_spectrum(hid_t file, const char* path, const char* unit) {
-  hdf5::make_group(file, "observables/impact_spectrum");
-  const hsize_t chunk = kSpectrumBins + 1, unlimited = H5S_UNLIMITED;
+void lay_out_result_array(hid_t file, const ResultArray& array) {
+  hdf5::make_group(file, array.path.substr(0, array.path.rfind('/')));
+  const hsize_t chunk = array.space, unlimited = H5S_UNLIMITED;
   const hdf5::Properties creation(hdf5::checked(H5Pcreate(H5P_DATASET_CREATE), "make a property list"));
   hdf5::checked(H5Pset_obj_track_times(creation, false), "leave out times");
   hdf5::checked(H5Pset_chunk(creation, 1, &chunk), "set a chunk");
   hdf5::checked(H5Pset_alloc_time(creation, H5D_ALLOC_TIME_EARLY), "fix a dataset's place");
   const hdf5::Space space(hdf5::checked(H5Screate_simple(1, &chunk, &unlimited), "make a shape"));
   const hdf5::Dataset set(
-      hdf5::checked(H5Dcreate2(file, path, H5T_NATIVE_DOUBLE, space, H5P_DEFAULT, creation, H5P_DEFAULT),
-                    std::string("make ") + path));
-  hdf5::set_attribute(set, "unit", unit);
+      hdf5::checked(H5Dcreate2(file, array.path.c_str(), H5T_NATIVE_DOUBLE, space, H5P_DEFAULT, creation, H5P_DEFAULT),
+                    "make " + array.path));
+  hdf5::set_attribute(set, "unit", array.unit);
 }
-
-constexpr const char* kEdges = "observables/impact_spectrum/edges";
-constexpr const char* kBallBall = "observables/impact_spectrum/ball_ball";
-constexpr const char* kBallWall = "observables/impact_spectrum/ball_wall";
 
 void lay_out(hid_t file, const RunSetup& setup, std::size_t checkpoint_words) {
   const hsize_t frames = static_cast<hsize_t>(setup.frame_count), balls = setup.balls.size();
@@ -124,9 +120,7 @@ void lay_out(hid_t file, const RunSetup& setup, std::size_t checkpoint_words) {
     lay_out_element(file, s.path, H5T_NATIVE_DOUBLE, {frames}, s.unit, hdf5::Fill::kNan);
   for (const auto& cause : setup.dissipation_causes)
     lay_out_element(file, dissipation_path(cause), H5T_NATIVE_DOUBLE, {frames}, "J", hdf5::Fill::kNan);
-  lay_out_spectrum(file, kEdges, "J");
-  lay_out_spectrum(file, kBallBall, "s-1");
-  lay_out_spectrum(file, kBallWall, "s-1");
+  for (const ResultArray& array : all_result_arrays()) lay_out_result_array(file, array);
 
   hdf5::make_string(file, "parameters/config", to_toml(setup.config));
   hdf5::make_string(file, "parameters/version", kVersion);
@@ -147,21 +141,19 @@ void lay_out(hid_t file, const RunSetup& setup, std::size_t checkpoint_words) {
   hdf5::make_array(file, kCheckpointWords, H5T_NATIVE_DOUBLE, {2, checkpoint_words});
 }
 
-void write_spectrum(const fs::path& part, const ImpactSpectrum& spectrum) {
-  if (spectrum.edges_J.size() > kSpectrumBins + 1)
-    throw WorkError(part.string(), "an impact spectrum has at most " + std::to_string(kSpectrumBins) + " bins");
+void write_result_arrays(const fs::path& part, const RunResult& result) {
   const auto file = hdf5::open_file(part, hdf5::Access::kChange);
-  const auto write = [&](const char* path, const std::vector<double>& values) {
-    const auto set = hdf5::open_array(file, path);
-    const hsize_t size = values.size();
-    hdf5::checked(H5Dset_extent(set, &size), std::string("size ") + path);
-    if (!values.empty())
-      hdf5::checked(H5Dwrite(set, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()),
-                    std::string("write ") + path);
-  };
-  write(kEdges, spectrum.edges_J);
-  write(kBallBall, spectrum.ball_ball);
-  write(kBallWall, spectrum.ball_wall);
+  for (const ResultArray& array : all_result_arrays()) {
+    const std::vector<double>& numbers = values(array, result);
+    if (numbers.size() > array.space)
+      throw WorkError(part.string(), array.path + " has at most " + std::to_string(array.space) + " numbers");
+    const auto set = hdf5::open_array(file, array.path);
+    const hsize_t size = numbers.size();
+    hdf5::checked(H5Dset_extent(set, &size), "size " + array.path);
+    if (!numbers.empty())
+      hdf5::checked(H5Dwrite(set, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, numbers.data()),
+                    "write " + array.path);
+  }
   hdf5::checked(H5Fflush(file, H5F_SCOPE_LOCAL), "write the file");
 }
 
@@ -340,7 +332,7 @@ struct RunWriter::Impl {
     file.write(places.caveat, caveat.data(), caveat.size());
     {
       const auto held = hdf5::lock();
-      write_spectrum(part, result.spectrum);
+      write_result_arrays(part, result);
     }
     file.write(places.complete, &complete, sizeof complete);
     // Checkpoints have had their day, and would differ between a run that was interrupted and one that was not.

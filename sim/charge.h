@@ -16,7 +16,9 @@ struct Charge {
                                       // velocity at the positions' own time, v + a that foreseen for the next
   std::vector<double> radius, mass;   // [m], [kg]
   std::vector<double> half_step_per_mass, half_step_per_inertia;  // dt / 2m [s/kg], dt / 2I
-  std::vector<double> fx, fy, moment;  // sum of the contact forces [N] and of their moments about the centre [N m]
+  std::vector<double> fx, fy, moment;  // sum of the forces [N] and of their moments about the centre [N m]
+  std::vector<double> pressure;        // sum of the normal forces |F_n| [N], where an effect asks for it
+  std::vector<double> end_x, end_y;    // springs against the end walls, in the mill's frame [m]
 
   std::size_t size() const { return x.size(); }
 };
@@ -26,7 +28,8 @@ inline Charge make_charge(const Balls& balls) {
   Charge c;
   c.radius = balls.radius;
   c.mass = balls.mass;
-  for (auto* v : {&c.x, &c.y, &c.angle, &c.vx, &c.vy, &c.spin, &c.ax, &c.ay, &c.alpha, &c.fx, &c.fy, &c.moment})
+  for (auto* v : {&c.x, &c.y, &c.angle, &c.vx, &c.vy, &c.spin, &c.ax, &c.ay, &c.alpha, &c.fx, &c.fy, &c.moment,
+                  &c.pressure, &c.end_x, &c.end_y})
     v->assign(balls.size(), 0.0);
   return c;
 }

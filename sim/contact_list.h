@@ -21,6 +21,8 @@ struct ContactList {
   std::vector<Contact> contacts;
   std::vector<std::uint8_t> touching;  // at the last step
   std::vector<ContactState> states;
+  std::vector<TermState> terms;      // of a model that is not plain, else empty
+  std::vector<std::uint16_t> place;  // of the first touch, face x kAngleBins + angle bin; contacts with the wall only
 
   std::size_t size() const { return contacts.size(); }
 };

@@ -8,20 +8,22 @@ namespace tumble::sim {
 namespace {
 
 // Feels one contact and books its losses; no force where the two do not touch.
-Reaction feel(const LinearSpringDashpot& law, const Touch& now, bool touches, double time_step,
-              ReferenceMill::Memory& memory, double& normal_loss, double& sliding_loss) {
+Reaction feel(const MillModel& model, const ContactModel& law, const Touch& now, const Pairing& pair, bool touches,
+              ReferenceMill::Memory& memory, double& normal_loss, double& sliding_loss, double& rolling_loss) {
   Reaction r;
   if (touches) {
-    r = touch(law, now, !memory.touching, time_step, memory.state);
+    r = model.plain() ? touch(law.springs, now, !memory.touching, model.time_step, memory.state)
+                      : touch(law, now, pair, !memory.touching, model.time_step, memory.state, memory.terms);
   } else if (memory.touching) {
-    r = part(law, now, memory.state);
-    memory.state = {};
+    r = model.plain() ? part(law.springs, now, memory.state) : part(law, now, pair, memory.state, memory.terms);
+    memory = {};
   } else {
     return r;
   }
   memory.touching = touches;
   normal_loss += r.normal_loss;
   sliding_loss += r.sliding_loss;
+  rolling_loss += r.rolling_loss;
   return r;
 }
 
@@ -44,13 +46,21 @@ void pair(ReferenceMill& mill, std::size_t i, std::size_t j) {
   const double effective_mass = c.mass[i] * c.mass[j] / (c.mass[i] + c.mass[j]);
 
   const Touch now{overlap, -(foreseen_x * nx + foreseen_y * ny), -(vx * nx + vy * ny) * dt, sliding * dt,
-                  Damping(mill.model.ball, dt).of(effective_mass)};
-  const Reaction r = feel(mill.model.ball, now, d2 < reach * reach, dt, mill.with_ball[i * c.size() + j],
-                          mill.ledger.dissipated[0], mill.ledger.dissipated[1]);
+                  Damping(mill.model.ball.springs, dt).of(effective_mass)};
+  const Pairing rolling{effective_mass, c.radius[i] * c.radius[j] / reach, (c.spin[j] - c.spin[i]) * dt};
+  const Reaction r =
+      feel(mill.model, mill.model.ball, now, rolling, d2 < reach * reach, mill.with_ball[i * c.size() + j],
+           mill.ledger.dissipated[0], mill.ledger.dissipated[1], mill.ledger.dissipated[4]);
   if (!(d2 < reach * reach)) return;
   const double fx = r.normal * nx - r.tangential * ny, fy = r.normal * ny + r.tangential * nx;
   push(c, i, -fx, -fy, -(arm_i * r.tangential));
   push(c, j, fx, fy, -(arm_j * r.tangential));
+  if (!mill.model.plain()) {
+    c.moment[i] -= r.couple;
+    c.moment[j] += r.couple;
+    c.pressure[i] += std::abs(r.normal);
+    c.pressure[j] += std::abs(r.normal);
+  }
 }
 
 // Ball i and the wall: n from the centre to the wall, the wall's point moves with Omega x p.
@@ -59,23 +69,69 @@ void wall(ReferenceMill& mill, std::size_t i, int feature, double angle, double&
   const MillModel& m = mill.model;
   const auto [distance, nx, ny, face] = nearest_on_wall(m.shell, pose_of(angle), feature, c.x[i], c.y[i]);
   const double px = c.x[i] + distance * nx, py = c.y[i] + distance * ny;
-  const double vx = -m.speed * py - c.vx[i], vy = m.speed * px - c.vy[i];
+  const double speed = mill_speed(m, mill.step);
+  const double vx = -speed * py - c.vx[i], vy = speed * px - c.vy[i];
   const double sliding = vy * nx - vx * ny - distance * c.spin[i];
 
   const Touch now{c.radius[i] - distance, -((vx - c.ax[i]) * nx + (vy - c.ay[i]) * ny),
                   -(vx * nx + vy * ny) * m.time_step, sliding * m.time_step,
-                  Damping(m.wall, m.time_step).of(c.mass[i])};
+                  Damping(m.wall.springs, m.time_step).of(c.mass[i])};
+  const Pairing rolling{c.mass[i], c.radius[i], (speed - c.spin[i]) * m.time_step};
   const bool touches = distance < c.radius[i];
   const Reaction r =
-      feel(m.wall, now, touches, m.time_step,
+      feel(m, m.wall, now, rolling, touches,
            mill.with_feature[i * static_cast<std::size_t>(feature_count(m.shell)) + static_cast<std::size_t>(feature)],
-           mill.ledger.dissipated[2], mill.ledger.dissipated[3]);
+           mill.ledger.dissipated[2], mill.ledger.dissipated[3], mill.ledger.dissipated[4]);
   if (!touches) return;
   const double sx = r.tangential * ny, sy = -r.tangential * nx;
   const double fx = sx - r.normal * nx, fy = sy - r.normal * ny;
   push(c, i, fx, fy, -(distance * r.tangential));
   torque += px * fy - py * fx;
   torque_shear += px * sy - py * sx;
+  if (m.plain()) return;
+  c.moment[i] -= r.couple;
+  torque -= r.couple;
+  c.pressure[i] += std::abs(r.normal);
+}
+
+// Forces of the end walls and of the fluids on ball i; their losses, and their moment about the axis.
+struct Fluid {
+  double force = 0, couple = 0;  // over velocity, over spin
+};
+void body(ReferenceMill& mill, std::size_t i, const ShellPose& pose, Fluid& drag, Fluid& pool) {
+  const MillModel& m = mill.model;
+  Charge& c = mill.charge;
+  const double dt = m.time_step, r = c.radius[i], speed = mill_speed(m, mill.step);
+  if (const EndWallFriction& ends = m.body.ends; ends.on()) {
+    const double ux = (c.vx[i] + speed * c.y[i]) * dt, uy = (c.vy[i] - speed * c.x[i]) * dt;
+    const double wx = c.end_x[i] + ux * pose.cos + uy * pose.sin, wy = c.end_y[i] + uy * pose.cos - ux * pose.sin;
+    const double limit = ends.coefficient * c.mass[i] * m.gravity + ends.pressure * c.pressure[i];
+    const double length = std::sqrt(wx * wx + wy * wy);
+    const double kept = ends.stiffness * length > limit ? limit / (ends.stiffness * length) : 1;
+    const double sx = kept * wx, sy = kept * wy;
+    mill.ledger.dissipated[7] += 0.5 * ends.stiffness * ((c.end_x[i] + sx) * (wx - sx) + (c.end_y[i] + sy) * (wy - sy));
+    c.end_x[i] = sx;
+    c.end_y[i] = sy;
+    const double fx = -ends.stiffness * (sx * pose.cos - sy * pose.sin),
+                 fy = -ends.stiffness * (sy * pose.cos + sx * pose.sin);
+    push(c, i, fx, fy, 0);
+    const double torque = c.x[i] * fy - c.y[i] * fx;
+    mill.ledger.torque += torque;
+    mill.ledger.drive_work += torque * speed * dt;
+  }
+  const double vx = c.vx[i] + c.ax[i], vy = c.vy[i] + c.ay[i], w = c.spin[i] + c.alpha[i];
+  const double v = std::sqrt(vx * vx + vy * vy), depth = m.body.pool.depth(c.y[i], r);
+  double lift = 0;
+  if (m.body.drag.on()) drag = {m.body.drag.per_velocity(r, v), m.body.drag.per_spin(r)};
+  if (m.body.pool.on() && depth > 0) {
+    const double share = m.body.pool.volume(depth, r) / m.body.pool.volume(2 * r, r);
+    pool = {share * m.body.pool.slurry.per_velocity(r, v), share * m.body.pool.slurry.per_spin(r)};
+    lift = m.body.pool.lift(depth, r);
+  }
+  const double fx = -(drag.force + pool.force) * vx, fy = lift - (drag.force + pool.force) * vy;
+  const double couple = -(drag.couple + pool.couple) * w;
+  push(c, i, fx, fy, couple);
+  mill.ledger.torque_external += c.x[i] * fy - c.y[i] * fx + couple;
 }
 
 }  // namespace
@@ -112,13 +168,24 @@ void advance(ReferenceMill& mill) {
       wall(mill, i, feature, angle, torque, torque_shear);
   mill.ledger.torque += torque;
   mill.ledger.torque_shear += torque_shear;
-  mill.ledger.drive_work += torque * mill.model.speed * dt;
+  mill.ledger.drive_work += torque * mill_speed(mill.model, mill.step) * dt;
 
   double mass_moment = 0;
+  const ShellPose pose = pose_of(angle);
   for (std::size_t i = 0; i < c.size(); ++i) {
+    Fluid drag, pool;
+    const double vx = c.vx[i] + c.ax[i], vy = c.vy[i] + c.ay[i], w = c.spin[i] + c.alpha[i];
+    if (mill.model.body.on()) body(mill, i, pose, drag, pool);
+    c.pressure[i] = 0;
     c.ax[i] = c.fx[i] * (0.5 * dt / c.mass[i]);
     c.ay[i] = c.fy[i] * (0.5 * dt / c.mass[i]) - 0.5 * mill.model.gravity * dt;
     c.alpha[i] = c.moment[i] * (0.5 * dt / inertia(c.mass[i], c.radius[i]));
+    if (mill.model.body.on()) {
+      const double along = (vx * (c.vx[i] + c.ax[i]) + vy * (c.vy[i] + c.ay[i])) * dt;
+      const double around = w * (c.spin[i] + c.alpha[i]) * dt;
+      mill.ledger.dissipated[5] += drag.force * along + drag.couple * around;
+      mill.ledger.dissipated[6] += pool.force * along + pool.couple * around;
+    }
     c.vx[i] += 2 * c.ax[i];
     c.vy[i] += 2 * c.ay[i];
     c.spin[i] += 2 * c.alpha[i];

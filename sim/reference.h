@@ -18,6 +18,7 @@ struct ReferenceMill {
   struct Memory {
     bool touching = false;
     ContactState state;
+    TermState terms;
   };
   std::vector<Memory> with_ball;     // of (i, j > i) at i n + j
   std::vector<Memory> with_feature;  // of (i, feature) at i (lifters + 1) + feature

@@ -1,6 +1,9 @@
 #include "sim/run_state.h"
 
+#include <algorithm>
+#include <array>
 #include <bit>
+#include <utility>
 
 #include "core/error.h"
 
@@ -10,9 +13,9 @@ namespace {
 // Contacts that can touch at once: discs in the plane make at most 3 n pairs (a planar graph); a ball touches at most
 // two lifters and the shell. Some more for balls that overlap.
 constexpr std::size_t kPairsPerBall = 4, kFeaturesPerBall = 4;
-constexpr std::size_t kWordsPerContact = 6;
-constexpr std::size_t kArraysOfBalls = 11;  // charge and locked balls, see `visit`
-constexpr std::size_t kOtherWords = 64 + 2 * kBins;
+constexpr std::size_t kWordsPerContact = 12;
+constexpr std::size_t kArraysOfBalls = 14;  // charge, flights and locked balls, see `visit`
+constexpr std::size_t kOtherWords = 64 + 6 * kBins + 2 * kPlaces + kFallBins;
 
 struct Writer {
   std::vector<double> words;
@@ -55,6 +58,7 @@ template <class Archive>
 void visit(Archive& archive, Sums& sums) {
   archive(sums.torque);
   archive(sums.torque_shear);
+  archive(sums.torque_external);
   archive(sums.mass_moment);
   visit_as_int64(archive, sums.steps);
 }
@@ -63,15 +67,23 @@ void visit(Archive& archive, Sums& sums) {
 template <class Archive>
 void visit(Archive& archive, RunState& run) {
   Charge& c = run.mill.charge;
-  for (auto* v : {&c.x, &c.y, &c.angle, &c.vx, &c.vy, &c.spin, &c.ax, &c.ay, &c.alpha}) archive(*v);
+  for (auto* v : {&c.x, &c.y, &c.angle, &c.vx, &c.vy, &c.spin, &c.ax, &c.ay, &c.alpha, &c.end_x, &c.end_y}) archive(*v);
+  archive(run.mill.flights.apex);
   archive(run.mill.step);
   archive(run.mill.fastest);
 
   Ledger& l = run.mill.ledger;
   archive(l.drive_work);
   for (double& d : l.dissipated) archive(d);
-  for (double& n : l.impacts.ball_ball) archive(n);
-  for (double& n : l.impacts.ball_wall) archive(n);
+  Impacts& n = l.impacts;
+  for (Spectrum* s : {&n.ball_ball, &n.ball_wall})
+    for (auto* bins : {&s->total, &s->normal, &s->tangential})
+      for (double& count : *bins) archive(count);
+  for (auto* bins : {&n.wall_number, &n.wall_energy})
+    for (double& count : *bins) archive(count);
+  for (double& count : n.falls) archive(count);
+  archive(n.lifter_number);
+  archive(n.lifter_energy);
   visit_as_int64(archive, l.counting_impacts);
 
   for (auto* v : {&run.history.torque, &run.history.closure, &run.history.locked, &run.locked.home, &run.locked.since})
@@ -79,11 +91,17 @@ void visit(Archive& archive, RunState& run) {
   visit_as_int64(archive, run.locked.count);
   visit(archive, run.frame);
   visit(archive, run.sample);
+  archive(run.work_at_frame);
   archive(run.averaging_from);
   archive(run.sampled_before);
   archive(run.frames_written);
   visit_as_int64(archive, run.spin_up_gave_up);
 }
+
+std::array<double*, 5> words_in(ContactState& s) {
+  return {&s.overlap, &s.dashpot, &s.spring, &s.normal_lost, &s.sliding_lost};
+}
+std::array<double*, 4> words_in(TermState& t) { return {&t.force, &t.stored, &t.damping, &t.roll}; }
 
 void write_touching(Writer& writer, const ContactList& list) {
   std::int64_t touching = 0;
@@ -92,10 +110,12 @@ void write_touching(Writer& writer, const ContactList& list) {
   for (std::size_t k = 0; k < list.size(); ++k) {
     if (!list.touching[k]) continue;
     std::int64_t i = list.contacts[k].i, j = list.contacts[k].j;
+    std::int64_t place = list.place.empty() ? 0 : list.place[k];
     ContactState s = list.states[k];
-    writer(i);
-    writer(j);
-    for (double* v : {&s.overlap, &s.dashpot, &s.spring, &s.lost}) writer(*v);
+    TermState t = list.terms.empty() ? TermState{} : list.terms[k];
+    for (std::int64_t* v : {&i, &j, &place}) writer(*v);
+    for (double* v : words_in(s)) writer(*v);
+    for (double* v : words_in(t)) writer(*v);
   }
 }
 
@@ -105,15 +125,31 @@ void read_touching(Reader& reader, ContactList& list, std::int64_t balls) {
   std::int64_t touching = 0;
   reader(touching);
   for (std::int64_t k = 0; k < touching; ++k) {
-    std::int64_t i = 0, j = 0;
+    std::int64_t i = 0, j = 0, place = 0;
     ContactState s;
-    reader(i);
-    reader(j);
-    for (double* v : {&s.overlap, &s.dashpot, &s.spring, &s.lost}) reader(*v);
-    if (i < 0 || i >= balls || j < 0) throw InputError("checkpoint", "is damaged; start afresh");
+    TermState t;
+    for (std::int64_t* v : {&i, &j, &place}) reader(*v);
+    for (double* v : words_in(s)) reader(*v);
+    for (double* v : words_in(t)) reader(*v);
+    if (i < 0 || i >= balls || j < 0 || place < 0 || place >= kPlaces)
+      throw InputError("checkpoint", "is damaged; start afresh");
     list.contacts.push_back({static_cast<int>(i), static_cast<int>(j), 0, 0});
     list.touching.push_back(1);
     list.states.push_back(s);
+    list.terms.push_back(t);
+    list.place.push_back(static_cast<std::uint16_t>(place));
+  }
+}
+
+// How many contacts each ball has is not kept: it follows from those that touch.
+void count_contacts(RunningMill& mill) {
+  std::vector<int>& contacts = mill.flights.contacts;
+  std::fill(contacts.begin(), contacts.end(), 0);
+  for (const Contact& c : mill.wall_contacts.contacts) ++contacts[c.i];
+  for (const Contact& c : mill.ball_contacts.contacts) {
+    if (c.j >= static_cast<int>(contacts.size())) throw InputError("checkpoint", "is damaged; start afresh");
+    ++contacts[c.i];
+    ++contacts[c.j];
   }
 }
 
@@ -133,21 +169,27 @@ void restore(RunState& run, const std::vector<double>& words) {
   Reader reader{words};
   visit(reader, run);
   const Charge& c = run.mill.charge;
-  for (const auto* v : {&c.x, &c.y, &c.angle, &c.vx, &c.vy, &c.spin, &c.ax, &c.ay, &c.alpha})
+  for (const std::vector<double>* v : {&c.x, &c.y, &c.angle, &c.vx, &c.vy, &c.spin, &c.ax, &c.ay, &c.alpha, &c.end_x,
+                                       &c.end_y, &std::as_const(run.mill.flights.apex)})
     if (v->size() != balls)
       throw InputError("checkpoint", "holds another number of balls than the config; start afresh");
+  const Impacts& impacts = run.mill.ledger.impacts;
+  const auto lifters = static_cast<std::size_t>(run.mill.model.shell.lifter_count);
   const History& h = run.history;
   if (h.closure.size() != h.size() || h.locked.size() != h.size() ||
       run.locked.since.size() != run.locked.home.size() || run.sampled_before < 0 ||
+      impacts.lifter_number.size() != lifters || impacts.lifter_energy.size() != lifters ||
       static_cast<std::size_t>(run.sampled_before) > h.size())
     throw InputError("checkpoint", "is damaged; start afresh");
   read_touching(reader, run.mill.ball_contacts, static_cast<std::int64_t>(balls));
   read_touching(reader, run.mill.wall_contacts, static_cast<std::int64_t>(balls));
+  count_contacts(run.mill);
   run.mill.stale = true;
 }
 
-std::size_t most_words(std::size_t balls, std::size_t samples) {
-  return balls * (kArraysOfBalls + kWordsPerContact * (kPairsPerBall + kFeaturesPerBall)) + 3 * samples + kOtherWords;
+std::size_t most_words(std::size_t balls, std::size_t samples, std::size_t lifters) {
+  return 2 * lifters + balls * (kArraysOfBalls + kWordsPerContact * (kPairsPerBall + kFeaturesPerBall)) + 3 * samples +
+         kOtherWords;
 }
 
 }  // namespace tumble::sim

@@ -8,7 +8,7 @@ namespace tumble::sim {
 
 // Means between two events of a run.
 struct Sums {
-  double torque = 0, torque_shear = 0, mass_moment = 0;
+  double torque = 0, torque_shear = 0, torque_external = 0, mass_moment = 0;
   long steps = 0;
 };
 
@@ -18,6 +18,7 @@ struct RunState {
   History history;
   LockedBalls locked;
   Sums frame, sample;                // since the last frame, since the last sample
+  double work_at_frame = 0;          // drive work up to the last frame [J]
   std::int64_t averaging_from = -1;  // step at which the averaged revolutions began; -1 during spin-up
   std::int64_t sampled_before = 0;   // history samples of the spin-up
   std::int64_t frames_written = 0;
@@ -29,7 +30,7 @@ struct RunState {
 std::vector<double> words_of(const RunState& run);
 void restore(RunState& run, const std::vector<double>& words);
 
-// Upper bound of the number of words for so many balls and history samples.
-std::size_t most_words(std::size_t balls, std::size_t samples);
+// Upper bound of the number of words for so many balls, history samples and lifters.
+std::size_t most_words(std::size_t balls, std::size_t samples, std::size_t lifters);
 
 }  // namespace tumble::sim

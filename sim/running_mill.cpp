@@ -6,22 +6,17 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "sim/contact_forces.h"
 
 namespace tumble::sim {
-namespace {
-
-[[noreturn]] void left_physics(const RunningMill& mill, const std::string& what) {
+void left_physics(const RunningMill& mill, const std::string& what) {
   throw WorkError("simulation",
                   fmt::format("step {}, time {:.6g} s: {}; take a smaller run.time_step (now {:.3g} s) or a larger "
                               "contact.normal_stiffness",
                               mill.step, double(mill.step) * mill.model.time_step, what, mill.model.time_step));
 }
 
-[[noreturn]] void overlap_too_large(const RunningMill& mill, int i, int j, double overlap, double radius) {
-  const std::string other = j < 0 ? std::string("the wall") : fmt::format("ball {}", j);
-  left_physics(mill, fmt::format("ball {} overlaps {} by {:.3g} mm, more than half a radius ({:.3g} mm)", i, other,
-                                 1e3 * overlap, 1e3 * radius / 2));
-}
+namespace {
 
 void drift(RunningMill& mill) {
   Charge& c = mill.charge;
@@ -35,7 +30,8 @@ void drift(RunningMill& mill) {
 
 void renew_lists_if_needed(RunningMill& mill, double angle) {
   const MillModel& m = mill.model;
-  mill.moved += std::max(mill.fastest, std::abs(m.speed) * m.shell.radius) * m.time_step;
+  const double shell = std::abs(m.speed) * (1 + m.ripple.amplitude) * m.shell.radius;
+  mill.moved += std::max(mill.fastest, shell) * m.time_step;
   if (!mill.stale && mill.moved <= mill.skin / 2) return;
   for (std::size_t i = 0; i < mill.charge.size(); ++i) {
     if (!(std::hypot(mill.charge.x[i], mill.charge.y[i]) < m.shell.radius))
@@ -48,152 +44,105 @@ void renew_lists_if_needed(RunningMill& mill, double angle) {
   mill.stale = false;
 }
 
-void end_impact(const RunningMill& mill, std::array<double, kBins>& bins, ContactState& state) {
-  if (mill.ledger.counting_impacts) bins[spectrum_bin(state.lost)] += 1;
-  state = {};
-}
+// What acts on ball i by itself, at the positions' time: forces into the sums, and what is needed to book its losses.
+struct BodyPush {
+  double drag = 0, pool = 0;            // force over velocity [kg/s]
+  double drag_spin = 0, pool_spin = 0;  // couple over spin [N m s]
+  double vx = 0, vy = 0, spin = 0;      // velocities that these were taken at
+  double external = 0;                  // moment of drag and pool about the axis [N m]
+};
 
-// Forces between balls: gather, law, scatter. The scatter runs in the order of the list, as a sum per ball would.
-void ball_forces(RunningMill& mill) {
-  const MillModel& m = mill.model;
-  const double dt = m.time_step;
+// Friction of the ends: a spring vector in the mill's frame, wound back to the limit.
+void end_walls(RunningMill& mill, std::size_t i, const ShellPose& pose, double speed) {
+  const EndWallFriction& ends = mill.model.body.ends;
+  const double dt = mill.model.time_step;
   Charge& c = mill.charge;
-  ContactList& list = mill.ball_contacts;
-
-  std::size_t close = 0;
-  for (std::size_t k = 0; k < list.size(); ++k) {
-    const Contact& contact = list.contacts[k];
-    const double dx = c.x[contact.j] - c.x[contact.i], dy = c.y[contact.j] - c.y[contact.i];
-    mill.close[close] = static_cast<std::uint32_t>(k);
-    close += static_cast<std::size_t>((dx * dx + dy * dy < contact.reach * contact.reach) | list.touching[k]);
-  }
-
-  double normal_loss = mill.ledger.dissipated[static_cast<std::size_t>(Cause::kBallBallNormal)];
-  double sliding_loss = mill.ledger.dissipated[static_cast<std::size_t>(Cause::kBallBallSliding)];
-  for (std::size_t q = 0; q < close; ++q) {
-    const std::size_t k = mill.close[q];
-    const Contact& contact = list.contacts[k];
-    const int i = contact.i, j = contact.j;
-    ContactState& state = list.states[k];
-
-    const double dx = c.x[j] - c.x[i], dy = c.y[j] - c.y[i];
-    const double d2 = dx * dx + dy * dy;
-    const double d = std::sqrt(d2);
-    const double nx = dx / d, ny = dy / d;
-    const double dvx = c.vx[j] - c.vx[i], dvy = c.vy[j] - c.vy[i];
-    const double dax = c.ax[j] - c.ax[i], day = c.ay[j] - c.ay[i];
-    Touch now;
-    now.overlap = contact.reach - d;
-    now.approach = -(dvx * nx + dvy * ny) * dt;
-    now.closing = -((dvx + dax) * nx + (dvy + day) * ny);
-    now.damping = contact.damping;
-    // The contact lies half the overlap inside either ball.
-    const double arm_i = c.radius[i] - 0.5 * now.overlap, arm_j = c.radius[j] - 0.5 * now.overlap;
-    now.slide = (dvy * nx - dvx * ny - (arm_i * c.spin[i] + arm_j * c.spin[j])) * dt;
-
-    if (!(d2 < contact.reach * contact.reach)) {
-      const Reaction r = part(m.ball, now, state);
-      normal_loss += r.normal_loss;
-      sliding_loss += r.sliding_loss;
-      end_impact(mill, mill.ledger.impacts.ball_ball, state);
-      list.touching[k] = 0;
-      continue;
-    }
-    if (now.overlap > 0.5 * std::min(c.radius[i], c.radius[j]))
-      overlap_too_large(mill, i, j, now.overlap, std::min(c.radius[i], c.radius[j]));
-    const Reaction r = touch(m.ball, now, !list.touching[k], dt, state);
-    list.touching[k] = 1;
-    normal_loss += r.normal_loss;
-    sliding_loss += r.sliding_loss;
-
-    const double fx = r.normal * nx - r.tangential * ny, fy = r.normal * ny + r.tangential * nx;  // on j
-    c.fx[i] -= fx;
-    c.fy[i] -= fy;
-    c.moment[i] -= arm_i * r.tangential;
-    c.fx[j] += fx;
-    c.fy[j] += fy;
-    c.moment[j] -= arm_j * r.tangential;
-  }
-  mill.ledger.dissipated[static_cast<std::size_t>(Cause::kBallBallNormal)] = normal_loss;
-  mill.ledger.dissipated[static_cast<std::size_t>(Cause::kBallBallSliding)] = sliding_loss;
-}
-
-// Forces of shell and lifters on the balls, and their moment about the axis.
-void wall_forces(RunningMill& mill, double angle) {
-  const MillModel& m = mill.model;
-  const Shell& shell = m.shell;
-  const double dt = m.time_step;
-  Charge& c = mill.charge;
-  ContactList& list = mill.wall_contacts;
-  const ShellPose pose = pose_of(angle);
-
-  double normal_loss = mill.ledger.dissipated[static_cast<std::size_t>(Cause::kBallWallNormal)];
-  double sliding_loss = mill.ledger.dissipated[static_cast<std::size_t>(Cause::kBallWallSliding)];
-  double torque = 0, torque_shear = 0;
-  for (std::size_t k = 0; k < list.size(); ++k) {
-    const Contact& contact = list.contacts[k];
-    const int i = contact.i;
-    const double x = c.x[i], y = c.y[i];
-    if (!list.touching[k] && !may_touch(shell, pose, contact.j, x, y, contact.reach)) continue;
-    const auto [distance, nx, ny, face] = nearest_on_wall(shell, pose, contact.j, x, y);
-    const bool touches = distance < contact.reach;
-    if (!touches && !list.touching[k]) continue;
-
-    ContactState& state = list.states[k];
-    const double px = x + distance * nx, py = y + distance * ny;  // on the wall
-    const double dvx = -m.speed * py - c.vx[i], dvy = m.speed * px - c.vy[i];
-    Touch now;
-    now.overlap = contact.reach - distance;
-    now.approach = -(dvx * nx + dvy * ny) * dt;
-    now.closing = -((dvx - c.ax[i]) * nx + (dvy - c.ay[i]) * ny);
-    now.damping = contact.damping;
-    now.slide = (dvy * nx - dvx * ny - distance * c.spin[i]) * dt;
-
-    if (!touches) {
-      const Reaction r = part(m.wall, now, state);
-      normal_loss += r.normal_loss;
-      sliding_loss += r.sliding_loss;
-      end_impact(mill, mill.ledger.impacts.ball_wall, state);
-      list.touching[k] = 0;
-      continue;
-    }
-    if (now.overlap > 0.5 * contact.reach) overlap_too_large(mill, i, -1, now.overlap, contact.reach);
-    const Reaction r = touch(m.wall, now, !list.touching[k], dt, state);
-    list.touching[k] = 1;
-    normal_loss += r.normal_loss;
-    sliding_loss += r.sliding_loss;
-
-    const double sx = r.tangential * ny, sy = -r.tangential * nx;  // on the ball
-    const double fx = sx - r.normal * nx, fy = sy - r.normal * ny;
-    c.fx[i] += fx;
-    c.fy[i] += fy;
-    c.moment[i] -= distance * r.tangential;
-    torque += px * fy - py * fx;
-    torque_shear += px * sy - py * sx;
-  }
-  mill.ledger.dissipated[static_cast<std::size_t>(Cause::kBallWallNormal)] = normal_loss;
-  mill.ledger.dissipated[static_cast<std::size_t>(Cause::kBallWallSliding)] = sliding_loss;
+  const double ux = (c.vx[i] + speed * c.y[i]) * dt, uy = (c.vy[i] - speed * c.x[i]) * dt;  // against the ends
+  const double wound_x = c.end_x[i] + ux * pose.cos + uy * pose.sin,
+               wound_y = c.end_y[i] + uy * pose.cos - ux * pose.sin;
+  const double limit = ends.coefficient * c.mass[i] * mill.model.gravity + ends.pressure * c.pressure[i];
+  const double wound = std::sqrt(wound_x * wound_x + wound_y * wound_y);
+  const double kept = ends.stiffness * wound > limit ? limit / (ends.stiffness * wound) : 1;
+  const double sx = kept * wound_x, sy = kept * wound_y;
+  mill.ledger.dissipated[static_cast<std::size_t>(Cause::kEndWalls)] +=
+      0.5 * ends.stiffness * ((c.end_x[i] + sx) * (wound_x - sx) + (c.end_y[i] + sy) * (wound_y - sy));
+  c.end_x[i] = sx;
+  c.end_y[i] = sy;
+  const double fx = -ends.stiffness * (sx * pose.cos - sy * pose.sin),
+               fy = -ends.stiffness * (sy * pose.cos + sx * pose.sin);
+  c.fx[i] += fx;
+  c.fy[i] += fy;
+  const double torque = c.x[i] * fy - c.y[i] * fx;
   mill.ledger.torque += torque;
-  mill.ledger.torque_shear += torque_shear;
-  mill.ledger.drive_work += torque * m.speed * dt;
+  mill.ledger.drive_work += torque * speed * dt;
 }
 
+BodyPush fluids(RunningMill& mill, std::size_t i) {
+  const BodyEffects& body = mill.model.body;
+  Charge& c = mill.charge;
+  const double r = c.radius[i];
+  BodyPush push;
+  push.vx = c.vx[i] + c.ax[i];
+  push.vy = c.vy[i] + c.ay[i];
+  push.spin = c.spin[i] + c.alpha[i];
+  const double speed = std::sqrt(push.vx * push.vx + push.vy * push.vy);
+  double lift = 0;
+  if (body.drag.on()) {
+    push.drag = body.drag.per_velocity(r, speed);
+    push.drag_spin = body.drag.per_spin(r);
+  }
+  if (const double depth = body.pool.on() ? body.pool.depth(c.y[i], r) : 0; depth > 0) {
+    const double share = body.pool.volume(depth, r) / body.pool.volume(2 * r, r);
+    push.pool = share * body.pool.slurry.per_velocity(r, speed);
+    push.pool_spin = share * body.pool.slurry.per_spin(r);
+    lift = body.pool.lift(depth, r);
+  }
+  const double fx = -(push.drag + push.pool) * push.vx, fy = lift - (push.drag + push.pool) * push.vy;
+  const double couple = -(push.drag_spin + push.pool_spin) * push.spin;
+  c.fx[i] += fx;
+  c.fy[i] += fy;
+  c.moment[i] += couple;
+  push.external = c.x[i] * fy - c.y[i] * fx + couple;
+  return push;
+}
+
+// Work done against the fluids in the step: forces at its middle, mean of the velocities before and after.
+void book_fluids(RunningMill& mill, const BodyPush& push, double vx, double vy, double spin) {
+  const double along = (push.vx * vx + push.vy * vy) * mill.model.time_step,
+               around = push.spin * spin * mill.model.time_step;
+  auto& dissipated = mill.ledger.dissipated;
+  dissipated[static_cast<std::size_t>(Cause::kFluidDrag)] += push.drag * along + push.drag_spin * around;
+  dissipated[static_cast<std::size_t>(Cause::kSlurryPool)] += push.pool * along + push.pool_spin * around;
+  mill.ledger.torque_external += push.external;
+}
+
+template <bool kBody>
 void kick(RunningMill& mill) {
   Charge& c = mill.charge;
   const double dt = mill.model.time_step;
   const double half_fall = 0.5 * mill.model.gravity * dt;
+  const ShellPose pose = kBody ? pose_of(mill_angle(mill.model, mill.step)) : ShellPose{};
+  const double speed = kBody ? mill_speed(mill.model, mill.step) : 0;
   double fastest2 = 0, mass_moment = 0;
   for (std::size_t i = 0; i < c.size(); ++i) {
+    BodyPush push;
+    if constexpr (kBody) {
+      if (mill.model.body.ends.on()) end_walls(mill, i, pose, speed);
+      push = fluids(mill, i);
+      c.pressure[i] = 0;
+    }
     const double per_force = c.half_step_per_mass[i], per_moment = c.half_step_per_inertia[i];
     c.ax[i] = c.fx[i] * per_force;
     c.ay[i] = c.fy[i] * per_force - half_fall;
     c.alpha[i] = c.moment[i] * per_moment;
+    if constexpr (kBody) book_fluids(mill, push, c.vx[i] + c.ax[i], c.vy[i] + c.ay[i], c.spin[i] + c.alpha[i]);
     c.vx[i] += 2 * c.ax[i];
     c.vy[i] += 2 * c.ay[i];
     c.spin[i] += 2 * c.alpha[i];
     c.fx[i] = c.fy[i] = c.moment[i] = 0;
     fastest2 = std::max(fastest2, c.vx[i] * c.vx[i] + c.vy[i] * c.vy[i]);
     mass_moment += c.mass[i] * c.x[i];
+    mill.flights.apex[i] = std::max(mill.flights.apex[i], c.y[i]);
   }
   if (!std::isfinite(mass_moment + fastest2)) {
     for (std::size_t i = 0; i < c.size(); ++i)
@@ -225,18 +174,22 @@ RunningMill start_mill(const MillModel& model, Charge charge) {
     c.vy[i] -= half_fall;
     mill.fastest = std::max(mill.fastest, std::hypot(c.vx[i], c.vy[i]));
   }
+  mill.flights.contacts.assign(c.size(), 0);
+  mill.flights.apex = c.y;
+  const auto lifters = static_cast<std::size_t>(model.shell.lifter_count);
+  mill.ledger.impacts.lifter_number.assign(lifters, 0);
+  mill.ledger.impacts.lifter_energy.assign(lifters, 0);
   mill.skin = 0.4 * *std::min_element(c.radius.begin(), c.radius.end());
   return mill;
 }
 
 void advance(RunningMill& mill) {
   ++mill.step;
-  const double angle = mill_angle(mill.model, mill.step);
   drift(mill);
-  renew_lists_if_needed(mill, angle);
+  renew_lists_if_needed(mill, mill_angle(mill.model, mill.step));
   ball_forces(mill);
-  wall_forces(mill, angle);
-  kick(mill);
+  wall_forces(mill);
+  mill.model.body.on() ? kick<true>(mill) : kick<false>(mill);
 }
 
 Energies energies_of(const RunningMill& mill) {
@@ -247,12 +200,22 @@ Energies energies_of(const RunningMill& mill) {
     e.kinetic += 0.5 * c.mass[i] * (vx * vx + vy * vy) + 0.5 * inertia(c.mass[i], c.radius[i]) * w * w;
     e.potential += c.mass[i] * mill.model.gravity * c.y[i];
   }
-  const auto add = [&](const ContactList& list, const LinearSpringDashpot& law) {
-    for (std::size_t k = 0; k < list.size(); ++k)
-      if (list.touching[k]) e.elastic += elastic_energy(law, list.states[k]);
+  const BodyEffects& body = mill.model.body;
+  for (std::size_t i = 0; i < c.size(); ++i) {
+    if (body.pool.on()) e.potential += body.pool.potential(c.y[i], c.radius[i]);
+    if (body.ends.on()) e.elastic += 0.5 * body.ends.stiffness * (c.end_x[i] * c.end_x[i] + c.end_y[i] * c.end_y[i]);
+  }
+  const auto add = [&](const ContactList& list, const ContactModel& law, auto&& effective_radius) {
+    for (std::size_t k = 0; k < list.size(); ++k) {
+      if (!list.touching[k]) continue;
+      e.elastic += mill.model.plain()
+                       ? elastic_energy(law.springs, list.states[k])
+                       : elastic_energy(law, effective_radius(list.contacts[k]), list.states[k], list.terms[k]);
+    }
   };
-  add(mill.ball_contacts, mill.model.ball);
-  add(mill.wall_contacts, mill.model.wall);
+  add(mill.ball_contacts, mill.model.ball,
+      [&](const Contact& k) { return c.radius[k.i] * c.radius[k.j] / (c.radius[k.i] + c.radius[k.j]); });
+  add(mill.wall_contacts, mill.model.wall, [&](const Contact& k) { return c.radius[k.i]; });
   return e;
 }
 

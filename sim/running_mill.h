@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <string>
 
 #include "sim/charge.h"
 #include "sim/contact_list.h"
@@ -8,11 +9,18 @@
 
 namespace tumble::sim {
 
+// Flights: which balls touch nothing, and how high they have come.
+struct Flights {
+  std::vector<int> contacts;  // that the ball has
+  std::vector<double> apex;   // highest since it last left a contact [m]
+};
+
 // A running mill. Everything that the future depends on: copied, it runs on in the same way.
 struct RunningMill {
   MillModel model;
   Charge charge;
   ContactList ball_contacts, wall_contacts;
+  Flights flights;
   Ledger ledger;
   std::int64_t step = 0;  // since the mill began to turn
 
@@ -30,6 +38,9 @@ RunningMill start_mill(const MillModel& model, Charge charge);
 
 // One time step: drift, contact forces, kick. Throws WorkError when the run leaves physics.
 void advance(RunningMill& mill);
+
+// The end of every run that leaves physics: throws WorkError with step, time and what to do.
+[[noreturn]] void left_physics(const RunningMill& mill, const std::string& what);
 
 // Torque and closure need no more than the ledger; these are the energies at the positions' own time [J].
 struct Energies {

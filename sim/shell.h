@@ -52,6 +52,9 @@ inline Direction lifter_direction(const Shell& shell, const ShellPose& pose, int
 // Number of features; they are 0 to this, less one.
 inline int feature_count(const Shell& shell) { return 1 + shell.lifter_count; }
 
+// The lifter that a feature other than 0 belongs to.
+inline int lifter_of(const Shell&, int feature) { return feature - 1; }
+
 // The parts of a shell where impacts are counted apart: `leading` looks in the direction of rotation.
 enum class Face { kPlate, kLeading, kTop, kTrailing, kCount };
 

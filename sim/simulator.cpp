@@ -45,6 +45,7 @@ std::int64_t sample_step(const MillModel& model, std::size_t sample) {
 void add(Sums& to, const Ledger& from) {
   to.torque += from.torque;
   to.torque_shear += from.torque_shear;
+  to.torque_external += from.torque_external;
   to.mass_moment += from.mass_moment;
   to.steps += from.steps;
 }
@@ -63,7 +64,7 @@ void advance_to(RunState& run, std::int64_t step, const Tick& tick) {
   Ledger& ledger = run.mill.ledger;
   add(run.frame, ledger);
   add(run.sample, ledger);
-  ledger.torque = ledger.torque_shear = ledger.mass_moment = 0;
+  ledger.torque = ledger.torque_shear = ledger.torque_external = ledger.mass_moment = 0;
   ledger.steps = 0;
 }
 
@@ -108,13 +109,15 @@ Frame frame_of(const RunState& run) {
   o.torque = run.frame.torque / steps;
   o.torque_shear = run.frame.torque_shear / steps;
   o.torque_closure = model.gravity * run.frame.mass_moment / steps;
-  o.power = o.torque * model.speed;
+  o.torque_external = run.frame.torque_external / steps;
+  o.power = (mill.ledger.drive_work - run.work_at_frame) / (steps * model.time_step);
   const Energies e = energies_of(mill);
   o.kinetic = e.kinetic;
   o.potential = e.potential;
   o.elastic = e.elastic;
   o.drive_work = mill.ledger.drive_work;
-  o.dissipation.assign(mill.ledger.dissipated.begin(), mill.ledger.dissipated.end());
+  for (const Cause cause : causes_of(model))
+    o.dissipation.push_back(mill.ledger.dissipated[static_cast<std::size_t>(cause)]);
   o.locked_balls = run.locked.count;
   return f;
 }
@@ -130,6 +133,12 @@ bool spin_up_is_over(const Config& config, RunState& run) {
   if (judge(run.history, samples / 2, samples, run.mill.charge.size(), kAutoZ).steady) return true;
   run.spin_up_gave_up = revolutions >= kAutoLongest;
   return run.spin_up_gave_up;
+}
+
+std::vector<std::string> cause_names(const MillModel& model) {
+  std::vector<std::string> names;
+  for (const Cause cause : causes_of(model)) names.emplace_back(kCauseNames[static_cast<std::size_t>(cause)]);
+  return names;
 }
 
 class Checkpoints {
@@ -162,7 +171,47 @@ void spin_up(const Config& config, RunState& run, Checkpoints& checkpoints, cons
   run.averaging_from = run.mill.step;
   run.sampled_before = static_cast<std::int64_t>(run.history.size());
   run.frame = {};
+  run.work_at_frame = run.mill.ledger.drive_work;
   run.mill.ledger.counting_impacts = true;
+}
+
+template <class Counts>
+std::vector<double> per_second(const Counts& counts, double seconds) {
+  std::vector<double> rates(counts.begin(), counts.end());
+  for (double& r : rates) r /= seconds;
+  return rates;
+}
+
+std::vector<double> even_edges(double last, int bins) {
+  std::vector<double> edges;
+  for (int b = 0; b <= bins; ++b) edges.push_back(last * b / bins);
+  return edges;
+}
+
+void add_impacts(RunResult& result, const Impacts& n, double seconds, double diameter) {
+  ImpactSpectrum& s = result.spectrum;
+  for (int b = 0; b <= kBins; ++b) s.edges_J.push_back(std::pow(10.0, kLowestDecade + double(b) / kBinsPerDecade));
+  s.ball_ball = per_second(n.ball_ball.total, seconds);
+  s.ball_ball_normal = per_second(n.ball_ball.normal, seconds);
+  s.ball_ball_tangential = per_second(n.ball_ball.tangential, seconds);
+  s.ball_wall = per_second(n.ball_wall.total, seconds);
+  s.ball_wall_normal = per_second(n.ball_wall.normal, seconds);
+  s.ball_wall_tangential = per_second(n.ball_wall.tangential, seconds);
+
+  result.falls = {even_edges(diameter, kFallBins), per_second(n.falls, seconds)};
+
+  ImpactPlaces& p = result.places;
+  p.angle_edges_deg = even_edges(360, kAngleBins);
+  static_assert(kFaces == kFaceNames.size() && kFaces == static_cast<int>(Face::kCount));
+  for (std::size_t f = 0; f < kFaceNames.size(); ++f) {
+    const auto of_face = [&](const std::array<double, kPlaces>& all) {
+      return std::vector<double>(all.begin() + f * kAngleBins, all.begin() + (f + 1) * kAngleBins);
+    };
+    p.frequency[f] = per_second(of_face(n.wall_number), seconds);
+    p.power[f] = per_second(of_face(n.wall_energy), seconds);
+  }
+  p.lifter_frequency = per_second(n.lifter_number, seconds);
+  p.lifter_power = per_second(n.lifter_energy, seconds);
 }
 
 RunResult result_of(const Config& config, const RunState& run) {
@@ -170,12 +219,7 @@ RunResult result_of(const Config& config, const RunState& run) {
   RunResult result;
   result.spin_up_revolutions = revolutions_after(model, run.averaging_from);
   const double seconds = double(run.mill.step - run.averaging_from) * model.time_step;
-  for (int b = 0; b <= kBins; ++b)
-    result.spectrum.edges_J.push_back(std::pow(10.0, kLowestDecade + double(b) / kBinsPerDecade));
-  for (int b = 0; b < kBins; ++b) {
-    result.spectrum.ball_ball.push_back(run.mill.ledger.impacts.ball_ball[b] / seconds);
-    result.spectrum.ball_wall.push_back(run.mill.ledger.impacts.ball_wall[b] / seconds);
-  }
+  add_impacts(result, run.mill.ledger.impacts, seconds, 2 * model.shell.radius);
 
   const Steadiness s = judge(run.history, static_cast<std::size_t>(run.sampled_before), run.history.size(),
                              run.mill.charge.size(), kCaveatZ);
@@ -222,7 +266,7 @@ RunResult simulate(const Config& config, const RunSink& sink, const Checkpoint* 
     run.mill = start_mill(model, settle(model, place_loosely(config, model, balls), settled));
   }
   const std::int64_t frames = frame_count(config, model);
-  if (sink.setup) sink.setup({config, balls, model.time_step, model.speed, frames, dissipation_causes()});
+  if (sink.setup) sink.setup({config, balls, model.time_step, model.speed, frames, cause_names(model)});
 
   Checkpoints checkpoints(sink);
   if (run.averaging_from < 0) spin_up(config, run, checkpoints, turned);
@@ -234,6 +278,7 @@ RunResult simulate(const Config& config, const RunSink& sink, const Checkpoint* 
     run_to(run, run.averaging_from + (run.frames_written + 1) * model.steps_per_frame, tick);
     if (sink.frame) sink.frame(frame_of(run));
     run.frame = {};
+    run.work_at_frame = run.mill.ledger.drive_work;
     ++run.frames_written;
     checkpoints.maybe(run);
   }
@@ -244,7 +289,8 @@ std::size_t checkpoint_capacity(const Config& config) {
   std::size_t balls = 0;
   for (const int n : class_counts(config)) balls += static_cast<std::size_t>(n);
   const double revolutions = (config.run.spin_up_auto ? kAutoLongest : config.run.spin_up) + config.run.revolutions + 2;
-  return most_words(balls, static_cast<std::size_t>(std::ceil(revolutions * kSamplesPerRevolution)));
+  return most_words(balls, static_cast<std::size_t>(std::ceil(revolutions * kSamplesPerRevolution)),
+                    static_cast<std::size_t>(std::max(0, config.mill.lifters.count)));
 }
 
 }  // namespace tumble::sim

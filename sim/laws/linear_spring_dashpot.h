@@ -56,10 +56,11 @@ struct Damping {
 
 // What a contact remembers from step to step; all zero while apart.
 struct ContactState {
-  double overlap = 0;  // d [m]
-  double dashpot = 0;  // C v_n [N]
-  double spring = 0;   // s [m]
-  double lost = 0;     // energy lost since the first touch [J]
+  double overlap = 0;       // d [m]
+  double dashpot = 0;       // C v_n [N]
+  double spring = 0;        // s [m]
+  double normal_lost = 0;   // energy lost since the first touch, in the dashpot [J]
+  double sliding_lost = 0;  // likewise, in what the tangential spring was wound back [J]
 };
 
 // Motion of a touching pair at one step.
@@ -76,22 +77,26 @@ struct Reaction {
   double tangential = 0;    // F_t [N]
   double normal_loss = 0;   // [J] since the last step
   double sliding_loss = 0;  // [J] since the last step
+  double couple = 0;        // against rolling [N m]; 0 for this law
+  double rolling_loss = 0;  // [J] since the last step; 0 for this law
 };
+
+// A contact begins and ends within a step, and whole steps of a force that jumps at the edge (dashpot, cohesion) would
+// make the restitution err in the first order of the time step, by up to pi z dt / (contact time). With s = d / (|v|
+// dt) steps to or from the edge, the weights below add up to the contact's true time: w(s) + w(s + 1) = s + 3/2. They
+// are continuous and vanish at the edge, so that it does not matter whether a last sliver of overlap is met or missed.
+inline double edge_weight(double overlap, double closing, double time_step) {
+  const double reach = std::abs(closing) * time_step;
+  if (!(overlap < 2 * reach)) return 1;
+  const double s = overlap / reach;
+  return s < 1 ? 1.5 * s : 2 - 0.5 * s;
+}
 
 // `first`: the pair did not touch at the step before.
 inline Reaction touch(const LinearSpringDashpot& law, const Touch& now, bool first, double time_step,
                       ContactState& state) {
   const double k_n = law.normal_stiffness, k_t = law.tangential_stiffness;
-  // A contact begins and ends within a step, and whole steps of dashpot would make the restitution err in the first
-  // order of the time step, by up to pi z dt / (contact time). With s = d / (|v| dt) steps to or from the edge, the
-  // weights below add up to the contact's true time: w(s) + w(s + 1) = s + 3/2. They are continuous and vanish at the
-  // edge, so that it does not matter whether a last sliver of overlap is met or missed.
-  const double reach = std::abs(now.closing) * time_step;
-  double dashpot = now.damping * now.closing;
-  if (now.overlap < 2 * reach) {
-    const double s = now.overlap / reach;
-    dashpot *= s < 1 ? 1.5 * s : 2 - 0.5 * s;
-  }
+  const double dashpot = now.damping * now.closing * edge_weight(now.overlap, now.closing, time_step);
   Reaction r;
   r.normal = k_n * now.overlap + dashpot;
   const double limit = law.friction * std::abs(r.normal);
@@ -107,7 +112,8 @@ inline Reaction touch(const LinearSpringDashpot& law, const Touch& now, bool fir
   state.overlap = now.overlap;
   state.dashpot = dashpot;
   state.spring = spring;
-  state.lost += r.normal_loss + r.sliding_loss;
+  state.normal_lost += r.normal_loss;
+  state.sliding_lost += r.sliding_loss;
   return r;
 }
 
@@ -117,7 +123,8 @@ inline Reaction part(const LinearSpringDashpot& law, const Touch& now, ContactSt
   r.normal_loss =
       0.5 * state.dashpot * (now.overlap - state.overlap) + 0.5 * law.normal_stiffness * state.overlap * now.overlap;
   r.sliding_loss = 0.5 * law.tangential_stiffness * state.spring * (state.spring + now.slide);
-  state.lost += r.normal_loss + r.sliding_loss;
+  state.normal_lost += r.normal_loss;
+  state.sliding_lost += r.sliding_loss;
   return r;
 }
 

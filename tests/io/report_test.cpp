@@ -72,7 +72,9 @@ struct Story {
     setup.time_step = 1e-5;
     setup.mill_speed = 4.7;
     result.spin_up_revolutions = 2;
-    result.spectrum = {{1e-6, 1e-5, 1e-4, 1e-3}, {0, 7.5, 0}, {0, 0, 2.5}};
+    result.spectrum.edges_J = {1e-6, 1e-5, 1e-4, 1e-3};
+    result.spectrum.ball_ball = {0, 7.5, 0};
+    result.spectrum.ball_wall = {0, 0, 2.5};
     for (auto* m : {&truth, &film}) {
       m->frames = 2;
       m->frames_per_second = 60;

@@ -54,7 +54,7 @@ TEST(Restitution, LossesAreThoseOfTheMotion) {
   const double lost = before - energies_of(mill).kinetic;
   EXPECT_NEAR(mill.ledger.dissipated[std::size_t(Cause::kBallBallNormal)], lost, 1e-12);
   EXPECT_NEAR(lost, 0.5 * 0.03 * 4 * (1 - 0.25), 0.01 * lost);
-  EXPECT_EQ(mill.ledger.impacts.ball_ball[std::size_t(spectrum_bin(lost))], 1);
+  EXPECT_EQ(mill.ledger.impacts.ball_ball.total[std::size_t(spectrum_bin(lost))], 1);
 }
 
 }  // namespace

@@ -1,0 +1,133 @@
+#pragma once
+#include <cmath>
+
+#include "sim/effects/cohesion.h"
+#include "sim/effects/friction_weakening.h"
+#include "sim/effects/hertz_contact.h"
+#include "sim/effects/impact_restitution.h"
+#include "sim/effects/rolling_resistance.h"
+#include "sim/laws/linear_spring_dashpot.h"
+
+// The law of one kind of contact (ball on ball, or ball on wall): the springs and dashpot of the 1992 paper, and the
+// effects that change them. Each effect is one member whose zeros switch it off; with all of them off the law is
+// `springs` alone (`plain`), and the loops over contacts run without any of this.
+//
+//   pressure    P = F(d) + C(d) v_n          F: spring, linear and Hertzian in shares; C: see hertz_contact.h
+//   normal      F_n = P - F_c                F_c: cohesion
+//   tangential  |F_t| <= mu(v_t) |P|         mu falls with the sliding speed: friction_weakening
+//   rolling     |M| <= mu_r R |P|            rolling_resistance
+//   restitution e(v_n at first touch)        impact_restitution
+//
+// Losses are the trapezoid of the force over each step's change of overlap, less what the springs hold: that is the
+// work which central differences do on the bodies (linear_spring_dashpot.h), whatever the force law.
+namespace tumble::sim {
+
+struct ContactModel {
+  LinearSpringDashpot springs;
+  HertzContact hertz;
+  ImpactRestitution restitution;
+  Cohesion cohesion;
+  FrictionWeakening friction;
+  RollingResistance rolling;
+
+  ContactModel() = default;
+  ContactModel(const LinearSpringDashpot& s) : springs(s) {}  // implicit: the plain law
+  bool plain() const {
+    return hertz.share == 0 && restitution.drop == 0 && cohesion.per_radius == 0 && friction.drop == 0 &&
+           rolling.coefficient == 0;
+  }
+};
+
+// What such a contact remembers beside ContactState.
+struct TermState {
+  double force = 0;    // F_n [N]
+  double stored = 0;   // U of the normal spring, cohesion included [J]
+  double damping = 0;  // C of the linear law at this contact's restitution [N s/m]
+  double roll = 0;     // theta_r [rad]
+};
+
+// The pair, and its rolling during the step.
+struct Pairing {
+  double effective_mass = 0;    // [kg]
+  double effective_radius = 0;  // R [m]
+  double roll = 0;              // [rad] since the last step
+};
+
+inline double rolling_stiffness(const ContactModel& law, double effective_radius) {
+  return law.springs.tangential_stiffness * effective_radius * effective_radius;
+}
+
+inline Reaction touch(const ContactModel& law, const Touch& now, const Pairing& pair, bool first, double time_step,
+                      ContactState& state, TermState& terms) {
+  const LinearSpringDashpot& s = law.springs;
+  const double d = now.overlap;
+  if (first) {
+    terms.damping = now.damping;
+    if (law.restitution.drop != 0) {
+      LinearSpringDashpot slower = s;
+      slower.restitution *= law.restitution.share_at(now.closing);
+      terms.damping = Damping(slower, time_step).of(pair.effective_mass);
+    }
+  }
+  double spring = s.normal_stiffness * d, stored = 0.5 * spring * d, stiffening = 1;
+  if (law.hertz.share != 0) {
+    const double hertz = law.hertz.stiffness * std::sqrt(pair.effective_radius * d) * d;
+    spring += law.hertz.share * (hertz - spring);
+    stored += law.hertz.share * (0.4 * hertz * d - stored);
+    stiffening = spring / std::sqrt(2 * stored * s.normal_stiffness);
+  }
+  const double weight = edge_weight(d, now.closing, time_step);
+  const double pressure = spring + terms.damping * stiffening * now.closing * weight;
+  const double attraction = law.cohesion.per_radius * pair.effective_radius;
+  stored -= attraction * d;
+
+  Reaction r;
+  r.normal = pressure - attraction * weight;
+  r.normal_loss =
+      0.5 * (terms.force + r.normal) * (d - (first ? d - now.approach : state.overlap)) - (stored - terms.stored);
+
+  double limit = s.friction * std::abs(pressure);
+  if (law.friction.drop != 0) limit *= law.friction.share_at(std::abs(now.slide) / time_step);
+  const double k_t = s.tangential_stiffness;
+  const double wound = state.spring + now.slide;
+  const double held = k_t * std::abs(wound) > limit ? std::copysign(limit / k_t, wound) : wound;
+  r.tangential = -k_t * held;
+  r.sliding_loss = 0.5 * k_t * (state.spring + held) * (wound - held);
+
+  if (law.rolling.coefficient != 0) {
+    const double k_r = rolling_stiffness(law, pair.effective_radius);
+    const double most = law.rolling.coefficient * pair.effective_radius * std::abs(pressure);
+    const double turned = terms.roll + pair.roll;
+    const double kept = k_r * std::abs(turned) > most ? std::copysign(most / k_r, turned) : turned;
+    r.couple = -k_r * kept;
+    r.rolling_loss = 0.5 * k_r * (terms.roll + kept) * (turned - kept);
+    terms.roll = kept;
+  }
+  terms.force = r.normal;
+  terms.stored = stored;
+  state.overlap = d;
+  state.spring = held;
+  state.normal_lost += r.normal_loss;
+  state.sliding_lost += r.sliding_loss;
+  return r;
+}
+
+// The losses of the step in which the pair came apart.
+inline Reaction part(const ContactModel& law, const Touch& now, const Pairing& pair, ContactState& state,
+                     TermState& terms) {
+  Reaction r;
+  r.normal_loss = 0.5 * terms.force * (now.overlap - state.overlap) + terms.stored;
+  r.sliding_loss = 0.5 * law.springs.tangential_stiffness * state.spring * (state.spring + now.slide);
+  r.rolling_loss = 0.5 * rolling_stiffness(law, pair.effective_radius) * terms.roll * (terms.roll + pair.roll);
+  state.normal_lost += r.normal_loss;
+  state.sliding_lost += r.sliding_loss;
+  return r;
+}
+
+inline double elastic_energy(const ContactModel& law, double effective_radius, const ContactState& state,
+                             const TermState& terms) {
+  return terms.stored + 0.5 * law.springs.tangential_stiffness * state.spring * state.spring +
+         0.5 * rolling_stiffness(law, effective_radius) * terms.roll * terms.roll;
+}
+
+}  // namespace tumble::sim
