@@ -9,5 +9,6 @@ void add_simulate(CLI::App& app);
 void add_render(CLI::App& app);
 void add_analyse(CLI::App& app);
 void add_sweep(CLI::App& app);
+void add_effects(CLI::App& app);
 
 }  // namespace tumble::cli
