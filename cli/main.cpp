@@ -45,6 +45,7 @@ int main(int argc, char** argv) try {
   tumble::cli::add_analyse(app);
   tumble::cli::add_parameters(app);
   tumble::cli::add_sweep(app);
+  tumble::cli::add_calibrate(app);
   tumble::cli::add_effects(app);
   app.footer("Example: tumble run examples/lab_mill_55cm.toml -o out\nEach verb has its own help: tumble run --help");
 

@@ -10,6 +10,7 @@ void add_render(CLI::App& app);
 void add_analyse(CLI::App& app);
 void add_parameters(CLI::App& app);
 void add_sweep(CLI::App& app);
+void add_calibrate(CLI::App& app);
 void add_effects(CLI::App& app);
 
 }  // namespace tumble::cli

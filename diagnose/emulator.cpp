@@ -9,11 +9,13 @@
 namespace tumble::diagnose {
 namespace {
 
-// Where nothing else is known of the deviation's width, in shares of the box, and of how near the runs' own standard
-// error comes to their scatter from packing to packing: logarithms, one standard deviation.
-constexpr double kUsualWidth = 0.6, kWidthSpread = 0.7;
-constexpr double kHintSpread = 0.4;
-constexpr double kJitter = 1e-10;  // keeps the matrix invertible where runs have no scatter
+// What is expected before the runs speak; spreads are one standard deviation of the logarithm. No response is quite a
+// polynomial, and a dozen scattered runs cannot show by how much: without the amplitude's expectation they would claim
+// that it is one, all with the same sign, and the error bars would be too small.
+constexpr double kUsualAmplitude = 0.1, kAmplitudeSpread = 0.7;  // of the deviation [of the values' rms]
+constexpr double kUsualWidth = 0.6, kWidthSpread = 0.7;          // of the deviation [of the box]
+constexpr double kHintSpread = 0.4;  // of the runs' scatter from packing to packing about their own standard error
+constexpr double kJitter = 1e-10;    // keeps the matrix invertible where runs have no scatter
 constexpr int kMostCalls = 400;
 
 double square(double x) { return x * x; }
@@ -106,6 +108,7 @@ double Emulator::misfit(const std::vector<double>& logs, double log_hint) {
   if (!factorise(logs)) return kNotGiven;
   double sum = log_determinant(covariance_) + log_determinant(trend_information_) + values_.dot(weights_);
   for (std::size_t k = 2; k < logs.size(); ++k) sum += square((logs[k] - std::log(kUsualWidth)) / kWidthSpread);
+  sum += square((logs[0] - std::log(kUsualAmplitude)) / kAmplitudeSpread);
   if (!std::isnan(log_hint)) sum += square((logs[1] - log_hint) / kHintSpread);
   return sum;
 }

@@ -26,6 +26,7 @@ constexpr std::size_t kStarts = 6;
 constexpr int kMostCalls = 2000;
 constexpr double kSlopeStep = 0.02;      // [of the range]
 constexpr double kUndetermined = 0.2;    // standard error [of the range]; a flat guess has 0.29
+constexpr double kFlatInformation = 12;  // of a flat distribution over the range: 1 / variance
 constexpr double kSignificance = 1.645;  // of a normal deviate, 5 % to one side
 
 using Point = std::vector<double>;  // in shares of the ranges
@@ -174,7 +175,7 @@ class Fitter {
 
   // Gauss and Newton's: from the slopes of what is emulated. Slopes are known with an error, whose square would count
   // as information and make the standard errors too small where keys trade off against each other: it is taken off.
-  // Directions that the data leave open get a standard error of several ranges, not an infinite one.
+  // The range itself is knowledge: where the data say nothing, its flat distribution's standard deviation is left.
   void find_covariance() {
     const auto d = index(dimensions());
     Eigen::MatrixXd information = Eigen::MatrixXd::Zero(d, d);
@@ -203,9 +204,9 @@ class Fitter {
       const FitKey& key = problem_.keys[k];
       if (key.prior_sd > 0) information(index(k), index(k)) += square((key.high - key.low) / key.prior_sd);
     }
-    constexpr double kWidest = 3;
+    // What was taken off may leave less than nothing in a direction that the data do not see.
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(information);
-    const Eigen::VectorXd inverse = solver.eigenvalues().cwiseMax(1 / square(kWidest)).cwiseInverse();
+    const Eigen::VectorXd inverse = (solver.eigenvalues().cwiseMax(0).array() + kFlatInformation).inverse();
     covariance_ = solver.eigenvectors() * inverse.asDiagonal() * solver.eigenvectors().transpose();
   }
 
