@@ -103,7 +103,8 @@ void body(ReferenceMill& mill, std::size_t i, const ShellPose& pose, Fluid& drag
   Charge& c = mill.charge;
   const double dt = m.time_step, r = c.radius[i], speed = mill_speed(m, mill.step);
   if (const EndWallFriction& ends = m.body.ends; ends.on()) {
-    const double ux = (c.vx[i] + speed * c.y[i]) * dt, uy = (c.vy[i] - speed * c.x[i]) * dt;
+    const double mid_x = c.x[i] - 0.5 * dt * c.vx[i], mid_y = c.y[i] - 0.5 * dt * c.vy[i];
+    const double ux = (c.vx[i] + speed * mid_y) * dt, uy = (c.vy[i] - speed * mid_x) * dt;
     const double wx = c.end_x[i] + ux * pose.cos + uy * pose.sin, wy = c.end_y[i] + uy * pose.cos - ux * pose.sin;
     const double limit = ends.coefficient * c.mass[i] * m.gravity + ends.pressure * c.pressure[i];
     const double length = std::sqrt(wx * wx + wy * wy);

@@ -57,7 +57,10 @@ void end_walls(RunningMill& mill, std::size_t i, const ShellPose& pose, double s
   const EndWallFriction& ends = mill.model.body.ends;
   const double dt = mill.model.time_step;
   Charge& c = mill.charge;
-  const double ux = (c.vx[i] + speed * c.y[i]) * dt, uy = (c.vy[i] - speed * c.x[i]) * dt;  // against the ends
+  // Against the ends during the step, with the position in its middle: that at its end would let a ball that is held
+  // drift outwards by W^2 r dt / 2.
+  const double mid_x = c.x[i] - 0.5 * dt * c.vx[i], mid_y = c.y[i] - 0.5 * dt * c.vy[i];
+  const double ux = (c.vx[i] + speed * mid_y) * dt, uy = (c.vy[i] - speed * mid_x) * dt;
   const double wound_x = c.end_x[i] + ux * pose.cos + uy * pose.sin,
                wound_y = c.end_y[i] + uy * pose.cos - ux * pose.sin;
   const double limit = ends.coefficient * c.mass[i] * mill.model.gravity + ends.pressure * c.pressure[i];

@@ -90,7 +90,8 @@ inline Reaction touch(const ContactModel& law, const Touch& now, const Pairing& 
   if (law.friction.drop != 0) limit *= law.friction.share_at(std::abs(now.slide) / time_step);
   const double k_t = s.tangential_stiffness;
   const double wound = state.spring + now.slide;
-  const double held = k_t * std::abs(wound) > limit ? std::copysign(limit / k_t, wound) : wound;
+  const double counted = first ? touched_share(now) * wound : wound;
+  const double held = k_t * std::abs(counted) > limit ? std::copysign(limit / k_t, counted) : counted;
   r.tangential = -k_t * held;
   r.sliding_loss = 0.5 * k_t * (state.spring + held) * (wound - held);
 

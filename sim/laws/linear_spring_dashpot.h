@@ -92,6 +92,9 @@ inline double edge_weight(double overlap, double closing, double time_step) {
   return s < 1 ? 1.5 * s : 2 - 0.5 * s;
 }
 
+// Share of the step in which a pair first touches that lies after the touch: only that winds the tangential spring.
+inline double touched_share(const Touch& now) { return now.overlap < now.approach ? now.overlap / now.approach : 1; }
+
 // `first`: the pair did not touch at the step before.
 inline Reaction touch(const LinearSpringDashpot& law, const Touch& now, bool first, double time_step,
                       ContactState& state) {
@@ -101,7 +104,8 @@ inline Reaction touch(const LinearSpringDashpot& law, const Touch& now, bool fir
   r.normal = k_n * now.overlap + dashpot;
   const double limit = law.friction * std::abs(r.normal);
   const double wound = state.spring + now.slide;
-  const double spring = k_t * std::abs(wound) > limit ? std::copysign(limit / k_t, wound) : wound;
+  const double counted = first ? touched_share(now) * wound : wound;
+  const double spring = k_t * std::abs(counted) > limit ? std::copysign(limit / k_t, counted) : counted;
   r.tangential = -k_t * spring;
 
   const double before = first ? now.overlap - now.approach : state.overlap;
