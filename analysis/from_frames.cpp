@@ -50,7 +50,7 @@ struct FrameMeasurer::State {
 };
 
 FrameMeasurer::FrameMeasurer(const RunSetup& setup) {
-  const MillShape shape = make_mill_shape(setup.config.mill);
+  const MillShape shape = make_mill_shape(setup.config);
   state_ = std::make_unique<State>(setup, shape);
   ChargeMotion& motion = state_->motion;
   motion.source = MotionSource::kRunFile;

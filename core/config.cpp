@@ -8,6 +8,7 @@
 #include "core/angle.h"
 #include "core/effects.h"
 #include "core/error.h"
+#include "core/lifter_check.h"
 #include "core/mill_shape.h"
 
 namespace tumble {
@@ -54,48 +55,6 @@ void check_mill(const Checker& c, const Mill& m) {
   if (m.slices && *m.slices < 1) c.fail("mill.slices", "is " + std::to_string(*m.slices) + ", must be 1 or more");
 }
 
-void check_lifters(const Checker& c, const Mill& m) {
-  const Lifters& l = m.lifters;
-  if (l.profile == LifterProfile::kNone) return;
-  c.range("mill.lifters.count", l.count, 0, 100000, "");
-  c.positive("mill.lifters.height", l.height, "m");
-  c.positive("mill.lifters.width", l.width, "m");
-  c.range("mill.lifters.leading_angle_deg", l.leading_angle_deg, 0, 85, "degrees from the radius");
-  c.range("mill.lifters.trailing_angle_deg", l.trailing_angle_deg, 0, 85, "degrees from the radius");
-  if (l.profile == LifterProfile::kRectangle && (l.leading_angle_deg > 0 || l.trailing_angle_deg > 0))
-    c.fail(l.leading_angle_deg > 0 ? "mill.lifters.leading_angle_deg" : "mill.lifters.trailing_angle_deg",
-           "a rectangle's faces are radial; use profile = \"trapezoid\"");
-  const double radius = m.diameter / 2;
-  if (l.height >= radius)
-    c.fail("mill.lifters.height",
-           "is " + number(l.height) + " m, reaches the mill's axis; must be below the radius " + number(radius) + " m");
-  if (l.count < 1 || std::isnan(l.width) || std::isnan(l.height) || std::isnan(radius)) return;
-
-  if (l.profile == LifterProfile::kTrapezoid) {
-    const double trailing = std::isnan(l.trailing_angle_deg) ? l.leading_angle_deg : l.trailing_angle_deg;
-    const double top = l.width - l.height * (std::tan(radians(l.leading_angle_deg)) + std::tan(radians(trailing)));
-    if (top < 0)
-      c.fail("mill.lifters.width", "is " + number(l.width) +
-                                       " m, the two faces cross below the top; must be at least " +
-                                       number(l.width - top) + " m with these angles and height");
-  }
-  if (l.profile == LifterProfile::kTriangle && !std::isnan(l.leading_angle_deg) && !std::isnan(l.trailing_angle_deg)) {
-    const double width = l.height * (std::tan(radians(l.leading_angle_deg)) + std::tan(radians(l.trailing_angle_deg)));
-    if (std::abs(width - l.width) > 0.02 * l.width)
-      c.fail("mill.lifters.width", "is " + number(l.width) + " m, but height and the two angles make " + number(width) +
-                                       " m; give the width and one angle");
-  }
-  // Overlap: a corner of lifter 0 beyond half the pitch, at the foot or (tall lifters) at the tip.
-  const MillShape shape = make_mill_shape(m);
-  for (const auto& p : shape.lifter) {
-    const double most = std::min(p.norm(), shape.radius) * std::sin(std::min(shape.pitch() / 2, kPi / 2));
-    if (l.count > 1 && std::abs(p.y()) > most)
-      c.fail("mill.lifters.count", std::to_string(l.count) + " lifters of width " + number(l.width) + " m and height " +
-                                       number(l.height) + " m overlap in a mill of diameter " + number(m.diameter) +
-                                       " m; use fewer or narrower ones");
-  }
-}
-
 void check_charge(const Checker& c, const Config& config) {
   const ChargeMix& charge = config.charge;
   if (!std::isnan(charge.filling) && charge.count)
@@ -107,8 +66,7 @@ void check_charge(const Checker& c, const Config& config) {
   if (charge.count && (*charge.count < 1 || *charge.count > 10'000'000))
     c.fail("charge.count", "is " + std::to_string(*charge.count) + ", must lie between 1 and 10000000");
   c.positive("charge.bulk_density", charge.bulk_density, "kg/m3");
-  const double tip =
-      std::isnan(config.mill.lifters.height) ? config.mill.diameter / 2 : make_mill_shape(config.mill).tip_radius;
+  const double tip = make_mill_shape(config).tip_radius;
   for (const BallClass& ball : charge.balls) {
     c.positive("charge.balls", ball.radius, "m for a radius");
     c.positive("charge.balls", ball.mass, "kg for a mass");
@@ -193,10 +151,10 @@ std::string place_of(const Config& config, const std::string& key) {
 void check(const Config& config) {
   const Checker c{config};
   check_mill(c, config.mill);
-  check_lifters(c, config.mill);
+  check_effects(c, config);  // the lifters' wear is one of them
+  check_lifters(config);
   check_charge(c, config);
   check_contact(c, config.contact);
-  check_effects(c, config);
   check_run(c, config.run);
 }
 
@@ -205,18 +163,7 @@ void check_complete(const Config& config) {
   c.given("mill.diameter", config.mill.diameter, "the diameter inside the shell in m");
   if (std::isnan(config.mill.speed) && std::isnan(config.mill.speed_rpm))
     c.fail("mill.speed", "is missing; give the fraction of critical speed, or mill.speed_rpm");
-  const Lifters& l = config.mill.lifters;
-  // A file with sizes and no shape would give a smooth shell that nobody asked for.
-  const auto said = [&](const char* key) { return config.origin.contains(std::string("mill.lifters.") + key); };
-  if (!said("profile") && (said("count") || said("height") || said("width")))
-    c.fail("mill.lifters.profile", "is missing; give \"rectangle\", \"triangle\" or \"trapezoid\", or \"none\"");
-  if (l.profile != LifterProfile::kNone) {
-    if (l.count < 1) c.fail("mill.lifters.count", "is missing; give the number of lifters, or profile = \"none\"");
-    c.given("mill.lifters.height", l.height, "the height above the shell in m");
-    c.given("mill.lifters.width", l.width, "the width at the foot in m");
-    if (l.profile == LifterProfile::kTrapezoid)
-      c.given("mill.lifters.leading_angle_deg", l.leading_angle_deg, "the leading face's angle from the radius");
-  }
+  check_lifters_complete(config);
   if (config.charge.balls.empty())
     c.fail("charge.balls", "is missing; give [ { radius = 0.012, mass = 0.060, share = 1.0 } ], in m and kg");
   for (const BallClass& ball : config.charge.balls) {

@@ -1,40 +1,23 @@
 #include "core/mill_shape.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
 #include "core/angle.h"
+#include "core/effects.h"
 
 namespace tumble {
 namespace {
 
-// Across the lifter (tangential, counter-clockwise) where the faces start at the foot and end at the tip.
-struct Section {
-  double foot_trailing, foot_leading, tip_trailing, tip_leading;
-};
-
-Section section_of(const Lifters& lifters) {
-  const double half = lifters.width / 2;
-  const auto run_in = [&](double angle_deg) { return lifters.height * std::tan(radians(angle_deg)); };
-  switch (lifters.profile) {
-    case LifterProfile::kTriangle: {
-      // One apex. Slanted in the direction of rotation unless an angle says otherwise (1992 paper, p. 602): the leading
-      // face takes the whole width and the trailing face is radial.
-      double apex = -half;
-      if (!std::isnan(lifters.leading_angle_deg))
-        apex = half - run_in(lifters.leading_angle_deg);
-      else if (!std::isnan(lifters.trailing_angle_deg))
-        apex = -half + run_in(lifters.trailing_angle_deg);
-      return {-half, half, apex, apex};
-    }
-    case LifterProfile::kTrapezoid: {
-      const double leading = lifters.leading_angle_deg;
-      const double trailing = std::isnan(lifters.trailing_angle_deg) ? leading : lifters.trailing_angle_deg;
-      return {-half, half, -half + run_in(trailing), half - run_in(leading)};
-    }
-    default:
-      return {-half, half, -half, half};
-  }
+MillShape circle_of(const Mill& mill) {
+  MillShape shape;
+  shape.radius = shape.tip_radius = mill.diameter / 2;
+  const Lifters& lifters = mill.lifters;
+  if (lifters.profile == LifterProfile::kNone || lifters.count < 1) return shape;
+  shape.lifter_count = lifters.count;
+  if (!std::isnan(lifters.height)) shape.tip_radius -= lifters.height;
+  return shape;
 }
 
 }  // namespace
@@ -42,59 +25,98 @@ Section section_of(const Lifters& lifters) {
 double MillShape::pitch() const { return lifter_count > 0 ? 2 * kPi / lifter_count : 2 * kPi; }
 
 MillShape make_mill_shape(const Mill& mill) {
-  MillShape shape;
-  shape.radius = shape.tip_radius = mill.diameter / 2;
-  const Lifters& lifters = mill.lifters;
-  if (lifters.profile == LifterProfile::kNone || lifters.count < 1 || std::isnan(lifters.height)) return shape;
-  shape.lifter_count = lifters.count;
-  shape.tip_radius = shape.radius - lifters.height;
-  if (std::isnan(lifters.width)) return shape;
-
-  const Section s = section_of(lifters);
-  // The faces start inside the steel, so that no gap opens between a straight foot and the round shell. They are drawn
-  // on along their own lines: a slanted face meets the shell where it should.
-  const double tip = shape.tip_radius;
-  const double foot = shape.radius + lifters.width * lifters.width / (2 * shape.radius);
-  const double on = (foot - tip) / lifters.height;
-  const auto at_foot = [&](double from, double to) { return to + (from - to) * on; };
-  shape.lifter = {{foot, at_foot(s.foot_trailing, s.tip_trailing)},
-                  {foot, at_foot(s.foot_leading, s.tip_leading)},
-                  {tip, s.tip_leading}};
-  if (s.tip_leading > s.tip_trailing) shape.lifter.emplace_back(tip, s.tip_trailing);
+  MillShape shape = circle_of(mill);
+  if (shape.lifter_count == 0) return shape;
+  LifterSection section = make_section(mill, {});
+  if (section.chain.empty()) return shape;
+  shape.tip_radius = section.tip_radius();
+  shape.sections.push_back(std::move(section));
+  shape.section_of.assign(static_cast<std::size_t>(shape.lifter_count), 0);
   return shape;
+}
+
+MillShape make_mill_shape(const Config& config) {
+  MillShape shape = make_mill_shape(config.mill);
+  if (shape.sections.empty()) return shape;
+
+  if (has_effect(config, "lifter_wear")) {
+    const std::vector<int> worn = effect_list(config, "lifter_wear", "lifters");
+    LifterSection section = make_section(config.mill, {effect_value(config, "lifter_wear", "height_loss"),
+                                                       effect_value(config, "lifter_wear", "rounding")});
+    if (worn.empty()) {
+      shape.sections.front() = std::move(section);
+    } else {
+      shape.sections.push_back(std::move(section));
+      for (const int k : worn) shape.section_of[static_cast<std::size_t>(k)] = 1;
+    }
+  }
+  if (has_effect(config, "missing_lifters"))
+    for (const int k : effect_list(config, "missing_lifters", "lifters"))
+      shape.section_of[static_cast<std::size_t>(k)] = -1;
+
+  shape.tip_radius = shape.radius;
+  for (int s = 0; s < static_cast<int>(shape.sections.size()); ++s)
+    if (std::find(shape.section_of.begin(), shape.section_of.end(), s) != shape.section_of.end())
+      shape.tip_radius = std::min(shape.tip_radius, shape.sections[static_cast<std::size_t>(s)].tip_radius());
+  return shape;
+}
+
+std::vector<OutlinePoint> labelled_outline(const MillShape& shape, double chord) {
+  std::vector<OutlinePoint> points;
+  const auto on_shell = [&](double from, double to) {  // open at the end
+    const int n = static_cast<int>(std::ceil((to - from) * shape.radius / chord - 1e-6));
+    for (int i = 0; i < n; ++i) {
+      const double a = from + (to - from) * i / n;
+      points.push_back({shape.radius * Eigen::Vector2d(std::cos(a), std::sin(a)), -1, Face::kPlate});
+    }
+  };
+
+  struct Part {  // a section's visible chain, open at the end
+    std::vector<OutlinePoint> points;
+    double begin = 0, end = 0;  // where it meets the shell [rad]
+  };
+  std::vector<Part> parts;
+  for (const LifterSection& section : shape.sections) {
+    Part part;
+    const auto chain = clipped(section, shape.radius);
+    for (std::size_t i = 0; i + 1 < chain.size(); ++i) {
+      const Eigen::Vector2d t = chain[i + 1] - chain[i];
+      part.points.push_back(
+          {chain[i], 0, face_of(section, shape.radius, (chain[i] + chain[i + 1]) / 2, {-t.y(), t.x()})});
+    }
+    part.begin = std::atan2(chain.front().y(), chain.front().x());
+    part.end = std::atan2(chain.back().y(), chain.back().x());
+    if (section.smooth && part.begin > 0) part.begin -= 2 * kPi;  // a single wave begins opposite its crest
+    parts.push_back(std::move(part));
+  }
+
+  std::vector<int> there;
+  for (int k = 0; k < static_cast<int>(shape.section_of.size()); ++k)
+    if (shape.section_of[static_cast<std::size_t>(k)] >= 0) there.push_back(k);
+  if (there.empty()) {
+    on_shell(0, 2 * kPi);
+    return points;
+  }
+  const auto part_of = [&](int k) -> const Part& {
+    return parts[static_cast<std::size_t>(shape.section_of[static_cast<std::size_t>(k)])];
+  };
+  for (std::size_t i = 0; i < there.size(); ++i) {
+    const int k = there[i], next = there[(i + 1) % there.size()];
+    const double angle = k * shape.pitch();
+    const double on = (i + 1 < there.size() ? 0 : 2 * kPi) + next * shape.pitch();
+    for (OutlinePoint p : part_of(k).points) {
+      p.at = Eigen::Rotation2Dd(angle) * p.at;
+      p.lifter = k;
+      points.push_back(p);
+    }
+    on_shell(angle + part_of(k).end, on + part_of(next).begin);
+  }
+  return points;
 }
 
 std::vector<Eigen::Vector2d> outline(const MillShape& shape, double chord) {
   std::vector<Eigen::Vector2d> points;
-  const auto arc = [&](double from, double to) {  // open at the end
-    const int n = std::max(1, static_cast<int>(std::ceil((to - from) * shape.radius / chord)));
-    for (int i = 0; i < n; ++i) {
-      const double a = from + (to - from) * i / n;
-      points.emplace_back(shape.radius * std::cos(a), shape.radius * std::sin(a));
-    }
-  };
-  if (shape.lifter.empty()) {
-    arc(0, 2 * kPi);
-    return points;
-  }
-  // Where a face's line crosses the shell: the angle at which |tip + t (foot - tip)| = R.
-  const auto crossing = [&](const Eigen::Vector2d& tip, const Eigen::Vector2d& foot) {
-    const Eigen::Vector2d d = foot - tip;
-    const double a = d.squaredNorm(), b = tip.dot(d), c = tip.squaredNorm() - shape.radius * shape.radius;
-    const Eigen::Vector2d p = tip + d * ((-b + std::sqrt(b * b - a * c)) / a);
-    return std::atan2(p.y(), p.x());
-  };
-  const double trailing = crossing(shape.lifter.back(), shape.lifter[0]);
-  const double leading = crossing(shape.lifter[2], shape.lifter[1]);
-  for (int k = 0; k < shape.lifter_count; ++k) {
-    const double a = k * shape.pitch(), c = std::cos(a), s = std::sin(a);
-    const auto turned = [&](const Eigen::Vector2d& p) {
-      return Eigen::Vector2d(c * p.x() - s * p.y(), s * p.x() + c * p.y());
-    };
-    points.emplace_back(shape.radius * std::cos(a + trailing), shape.radius * std::sin(a + trailing));
-    for (std::size_t i = shape.lifter.size() - 1; i >= 2; --i) points.push_back(turned(shape.lifter[i]));
-    arc(a + leading, a + shape.pitch() + trailing);
-  }
+  for (const OutlinePoint& p : labelled_outline(shape, chord)) points.push_back(p.at);
   return points;
 }
 

@@ -322,7 +322,7 @@ std::string picture_caption(const ChargeMotion& m) {
 
 void write_run_report(const fs::path& path, const RunReport& r) {
   const Config& config = r.setup->config;
-  const MillShape shape = make_mill_shape(config.mill);
+  const MillShape shape = make_mill_shape(config);
   const Film film = film_of(r, path);
   const Json spectrum = spectrum_of(r.result->spectrum);
   const std::string title = title_of(config);

@@ -1,6 +1,7 @@
 #include "render/mill_view.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <numeric>
@@ -24,51 +25,92 @@ std::function<Rgba(double)> steel(double brightness) {
   };
 }
 
-// A foot lies inside the shell's steel; it is drawn as far as the liner reaches, along its own face.
-Eigen::Vector2d foot_on_liner(const Eigen::Vector2d& foot, const Eigen::Vector2d& tip, double liner) {
-  if (foot.norm() <= liner) return foot;
-  const Eigen::Vector2d d = foot - tip;
-  const double a = d.squaredNorm(), b = tip.dot(d), c = tip.squaredNorm() - liner * liner;
-  return tip + d * ((-b + std::sqrt(b * b - a * c)) / a);
+double area_of(const Vec2& a, const Vec2& b, const Vec2& c) {
+  return (b - a).x() * (c - a).y() - (b - a).y() * (c - a).x();
 }
 
-// Lifter 0 as it is seen: its corners counter-clockwise, the first two at the foot.
-std::vector<Eigen::Vector2d> visible_lifter(const MillShape& shape) {
-  std::vector<Eigen::Vector2d> corners = shape.lifter;
-  const double liner = shape.radius * kLinerShare;
-  corners[0] = foot_on_liner(corners[0], corners.back(), liner);
-  corners[1] = foot_on_liner(corners[1], corners[2], liner);
-  return corners;
+bool is_convex(const std::vector<Vec2>& p) {
+  for (std::size_t i = 0; i < p.size(); ++i)
+    if (area_of(p[i], p[(i + 1) % p.size()], p[(i + 2) % p.size()]) < 0) return false;
+  return true;
+}
+
+// Triangles of a simple polygon, counter-clockwise: ears are cut off until none is left.
+std::vector<std::array<std::size_t, 3>> triangles_of(const std::vector<Vec2>& p) {
+  std::vector<std::size_t> left(p.size());
+  std::iota(left.begin(), left.end(), std::size_t{0});
+  std::vector<std::array<std::size_t, 3>> triangles;
+  for (std::size_t i = 0, looked = 0; left.size() > 2 && looked < left.size();) {
+    const std::size_t n = left.size(), a = left[(i + n - 1) % n], b = left[i % n], c = left[(i + 1) % n];
+    bool ear = area_of(p[a], p[b], p[c]) > 0;
+    for (const std::size_t k : left)
+      ear = ear && (k == a || k == b || k == c || area_of(p[a], p[b], p[k]) < 0 || area_of(p[b], p[c], p[k]) < 0 ||
+                    area_of(p[c], p[a], p[k]) < 0);
+    if (ear) {
+      triangles.push_back({a, b, c});
+      left.erase(left.begin() + static_cast<std::ptrdiff_t>(i % n));
+      looked = 0;
+    } else {
+      ++looked;
+    }
+    i = (i + (ear ? 0 : 1)) % left.size();
+  }
+  return triangles;
+}
+
+// A lifter's outline as it is seen, from the trailing to the leading foot. Feet lie inside the shell's steel; they are
+// drawn as far as the liner reaches.
+std::vector<Vec2> visible_outline(const LifterSection& section, double liner, double pixel) {
+  return thinned(clipped(section, liner), 0.1 * pixel);
 }
 
 // A lifter's faces catch the light as they turn: that, not colour, makes them look solid.
-void draw_lifter(Canvas& canvas, std::span<const Eigen::Vector2d> lifter, double angle) {
+void draw_lifter(Canvas& canvas, const LifterSection& section, double liner, double angle) {
   const Camera& camera = canvas.layout.camera;
+  const std::vector<Vec2> chain = visible_outline(section, liner, 1 / camera.pixels_per_metre);
   const double c = std::cos(angle), s = std::sin(angle);
+  const auto seen = [&](const Vec2& p) -> Vec2 {
+    return camera.image_from_mill(c * p.x() - s * p.y(), s * p.x() + c * p.y());
+  };
+  const Rgba foot = scaled(ink::kSteel, 0.55), tip = scaled(ink::kSteel, 0.80);
+
+  // Counter-clockwise, feet first.
+  std::vector<Vec2> body{chain.front()};
+  body.insert(body.end(), chain.rbegin(), chain.rend() - 1);
   std::vector<Vec2> corners;
   std::vector<Rgba> colours;
-  for (std::size_t i = 0; i < lifter.size(); ++i) {
-    const auto& p = lifter[i];
-    corners.push_back(camera.image_from_mill(c * p.x() - s * p.y(), s * p.x() + c * p.y()));
-    colours.push_back(scaled(ink::kSteel, i < 2 ? 0.55 : 0.80));
+  for (std::size_t i = 0; i < body.size(); ++i) {
+    corners.push_back(seen(body[i]));
+    colours.push_back(i < 2 ? foot : tip);
   }
-  canvas.meshes.convex(corners, colours);
+  if (section.smooth) {  // a wave: strips down to the liner, which may go a long way round
+    for (std::size_t i = 0; i + 1 < chain.size(); ++i) {
+      const Vec2 a = seen(chain[i]), b = seen(chain[i + 1]);
+      const Vec2 under_a = seen(chain[i] * liner / chain[i].norm());
+      const Vec2 under_b = seen(chain[i + 1] * liner / chain[i + 1].norm());
+      canvas.meshes.triangle(a, b, under_b, tip, tip, foot);
+      canvas.meshes.triangle(a, under_b, under_a, tip, foot, foot);
+    }
+  } else if (is_convex(body)) {
+    canvas.meshes.convex(corners, colours);
+  } else {
+    for (const auto& [i, j, k] : triangles_of(body))
+      canvas.meshes.triangle(corners[i], corners[j], corners[k], colours[i], colours[j], colours[k]);
+  }
+
   const Vec2 light(std::cos(kLightAngle), -std::sin(kLightAngle));
-  const Vec2 middle = std::accumulate(corners.begin(), corners.end(), Vec2(0, 0)) / static_cast<double>(corners.size());
   const double width = canvas.stroke(1.6);
+  // The faces, then what lies across their ends.
   const auto draw_edge = [&](std::size_t i) {
-    const Vec2& a = corners[i];
-    const Vec2& b = corners[(i + 1) % corners.size()];
-    Vec2 outward(-(b - a).y(), (b - a).x());
-    outward.normalize();
-    if (outward.dot(a - middle) < 0) outward = -outward;
+    const Vec2 a = seen(chain[i]), b = seen(chain[i + 1]);
+    const Vec2 d = chain[i + 1] - chain[i];
+    const Vec2 outward = (seen(chain[i] + Vec2(-d.y(), d.x())) - a).normalized();
     const Rgba edge = scaled({255, 255, 255}, 0.55 + 0.4 * outward.dot(light));
     canvas.meshes.line(a - outward * width / 2, b - outward * width / 2, width, with_alpha(edge, 0.85));
   };
-  // The faces, then the tip across their ends; edge 0 is the foot, inside the steel.
-  draw_edge(1);
-  draw_edge(corners.size() - 1);
-  for (std::size_t i = 2; i + 1 < corners.size(); ++i) draw_edge(i);
+  draw_edge(chain.size() - 2);
+  draw_edge(0);
+  for (std::size_t i = chain.size() - 3; i >= 1 && i < chain.size(); --i) draw_edge(i);
 }
 
 // Bolts sit where lifters do; a mill without lifters gets a dozen, so that its turning can be seen.
@@ -105,9 +147,11 @@ void draw_shell(Canvas& canvas, const MillShape& shape) {
 }
 
 void draw_lifters(Canvas& canvas, const MillShape& shape, double mill_angle) {
-  if (!shape.lifter.empty()) {
-    const auto lifter = visible_lifter(shape);
-    for (int k = 0; k < shape.lifter_count; ++k) draw_lifter(canvas, lifter, mill_angle + k * shape.pitch());
+  for (std::size_t k = 0; k < shape.section_of.size(); ++k) {
+    const int section = shape.section_of[k];
+    if (section < 0) continue;
+    draw_lifter(canvas, shape.sections[static_cast<std::size_t>(section)], shape.radius * kLinerShare,
+                mill_angle + static_cast<double>(k) * shape.pitch());
   }
   draw_bolts(canvas, shape, mill_angle);
 }

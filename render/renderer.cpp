@@ -57,7 +57,7 @@ struct Renderer::Impl {
   Impl(const RunSetup& run, const Style& wanted)
       : setup(run),
         style(checked(wanted)),
-        shape(make_mill_shape(run.config.mill)),
+        shape(make_mill_shape(run.config)),
         context(style.width, style.height),
         scale(first_scale(run, style)) {
     const CurrentContext current(context);

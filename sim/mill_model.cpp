@@ -105,7 +105,7 @@ MillModel make_mill_model(const Config& config) {
   need_tangential_spring(config, wall);
 
   MillModel model;
-  model.shell = make_shell(make_mill_shape(config.mill));
+  model.shell = make_shell(make_mill_shape(config));
   model.ball = model_of(config, ball, ball.friction, mean);
   model.wall = model_of(config, wall, friction_at_wall(config, wall.friction), mean);
   model.gravity = kGravity;

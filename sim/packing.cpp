@@ -57,15 +57,22 @@ double clear_of_walls(const Shell& shell, Charge& c, int i, double radius) {
   }
   std::vector<int> near;
   features_near(shell, 0.0, c.x[i], c.y[i], radius, near);
+  // Deep in a lifter, only the shortest way out counts.
+  const int around = lifter_around(shell, c.x[i], c.y[i]);
+  if (around >= 0) {
+    near.clear();
+    for (int feature = 1; feature < feature_count(shell); ++feature)
+      if (lifter_of(shell, feature) == around) near.push_back(feature);
+  }
   for (const int feature : near) {
     if (feature == 0) continue;
-    const Direction l = lifter_direction(shell, ShellPose{}, feature - 1);
-    const Nearest n = nearest_on_lifter(shell, c.x[i] * l.cos + c.y[i] * l.sin, c.y[i] * l.cos - c.x[i] * l.sin);
+    const WallPoint n = nearest_on_wall(shell, ShellPose{}, feature, c.x[i], c.y[i]);
     const double inside = radius - n.distance;
-    if (inside <= 0) continue;
+    if (inside <= 0 || (around >= 0 && n.distance > 0)) continue;
     worst = std::max(worst, inside);
-    c.x[i] -= inside * (n.nx * l.cos - n.ny * l.sin);
-    c.y[i] -= inside * (n.nx * l.sin + n.ny * l.cos);
+    c.x[i] -= inside * n.nx;
+    c.y[i] -= inside * n.ny;
+    if (around >= 0) break;
   }
   return worst;
 }

@@ -7,61 +7,263 @@
 #include "core/units.h"
 
 namespace tumble::sim {
+namespace {
 
-Shell make_shell(const MillShape& shape) {
-  Shell shell;
-  shell.radius = shape.radius;
-  shell.tip_radius = shape.lifter.empty() ? shape.radius : shape.tip_radius;
-  if (shape.lifter.empty()) return shell;
-  shell.lifter_count = shape.lifter_count;
-  double low = shape.radius;
-  double high = 0;
-  for (std::size_t i = 0; i < shape.lifter.size(); ++i) {
-    const Eigen::Vector2d a = shape.lifter[i], b = shape.lifter[(i + 1) % shape.lifter.size()];
-    const Eigen::Vector2d t = (b - a).normalized();
-    shell.faces.push_back({a.x(), a.y(), t.x(), t.y(), t.y(), -t.x(), (b - a).norm()});
-    low = std::min(low, a.x());
-    high = std::max(high, a.x());
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr int kFewFaces = 8;      // up to here it is quicker to look at all of them
+constexpr int kFacesInBlock = 8;  // of longer runs
+
+using Vec2 = Eigen::Vector2d;
+
+double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
+
+struct Circle {
+  double x = 0, y = 0, reach = 0;
+};
+
+// Around the middle of their box, which is good enough.
+template <class Points>
+Circle around(const Points& points) {
+  Vec2 low(kInfinity, kInfinity), high(-kInfinity, -kInfinity);
+  for (const Vec2& p : points) {
+    low = low.cwiseMin(p);
+    high = high.cwiseMax(p);
   }
-  shell.lifter_centre = (low + high) / 2;
-  for (const Eigen::Vector2d& p : shape.lifter)
-    shell.lifter_reach = std::max(shell.lifter_reach, std::hypot(p.x() - shell.lifter_centre, p.y()));
-  for (int k = 0; k < shell.lifter_count; ++k) {
-    shell.lifter_cos.push_back(std::cos(k * shape.pitch()));
-    shell.lifter_sin.push_back(std::sin(k * shape.pitch()));
-  }
-  return shell;
+  Circle c{(low.x() + high.x()) / 2, (low.y() + high.y()) / 2, 0};
+  for (const Vec2& p : points) c.reach = std::max(c.reach, std::hypot(p.x() - c.x, p.y() - c.y));
+  return c;
 }
 
-Nearest nearest_on_lifter(const Shell& shell, double x, double y) {
-  // The face from which the point stands out farthest holds the nearest point of a convex polygon, or one of its ends.
+// Corners where a run of the outline begins and ends: its ends, and where re-entrant corners add up to a real one.
+std::vector<std::size_t> cuts_of(const std::vector<Vec2>& p, bool smooth) {
+  std::vector<std::size_t> cuts{0};
+  double hollow = 0;
+  for (std::size_t i = 1; i + 1 < p.size() && !smooth; ++i) {
+    const Vec2 in = p[i] - p[i - 1], out = p[i + 1] - p[i];
+    hollow += std::max(0.0, -std::atan2(cross(in, out), in.dot(out)));
+    if (hollow <= kSeam) continue;
+    cuts.push_back(i);
+    hollow = 0;
+  }
+  cuts.push_back(p.size() - 1);
+  return cuts;
+}
+
+// Do the points in a row, closed, go once round a convex body, counter-clockwise?
+bool closes_convex(const std::vector<Vec2>& p) {
+  double turned = 0;
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    const Vec2 in = p[(i + 1) % p.size()] - p[i], out = p[(i + 2) % p.size()] - p[(i + 1) % p.size()];
+    const double turn = std::atan2(cross(in, out), in.dot(out));
+    if (turn < 0) return false;
+    turned += turn;
+  }
+  return turned < 3 * kPi;
+}
+
+void add_run(Shell& shell, const MillShape& shape, int section_number, const std::vector<Vec2>& p) {
+  const LifterSection& section = shape.sections[static_cast<std::size_t>(section_number)];
+  Run run;
+  run.section = section_number;
+  run.begin = static_cast<int>(shell.faces.size());
+  for (std::size_t i = 0; i + 1 < p.size(); ++i) {
+    const Vec2 a = p[i], b = p[i + 1];
+    const Vec2 t = (b - a).normalized();
+    const Vec2 n(t.y(), -t.x());
+    LifterFace face{a.x(), a.y(), t.x(), t.y(), n.x(), n.y(), (b - a).norm(), n.x(), n.y(), n.x(), n.y(), {}, {}, {}};
+    face.face = face.at_start = face.at_end = face_of(section, shape.radius, (a + b) / 2, n);
+    if (i > 0) {
+      LifterFace& before = shell.faces.back();
+      const Vec2 corner = n + Vec2(before.nx, before.ny);
+      before.ex = face.sx = corner.x();
+      before.ey = face.sy = corner.y();
+      before.at_end = face.at_start = face_of(section, shape.radius, a, corner);
+    }
+    shell.faces.push_back(face);
+  }
+  run.end = static_cast<int>(shell.faces.size());
+  // Only where the closing line lies in the shell's steel: a ball under a hook would take it for a face.
+  run.convex = p.size() == section.chain.size() && run.end - run.begin <= kFewFaces && closes_convex(p);
+  run.first_block = static_cast<int>(shell.blocks.size());
+  for (std::size_t i = 0; i + 1 < p.size(); i += kFacesInBlock) {
+    const std::size_t end = std::min(i + kFacesInBlock, p.size() - 1);
+    const Circle c = around(std::vector<Vec2>(p.begin() + static_cast<std::ptrdiff_t>(i),
+                                              p.begin() + static_cast<std::ptrdiff_t>(end) + 1));
+    shell.blocks.push_back({run.begin + static_cast<int>(i), run.begin + static_cast<int>(end), c.x, c.y, c.reach});
+  }
+  run.last_block = static_cast<int>(shell.blocks.size());
+  const Circle c = around(p);
+  run.x = c.x;
+  run.y = c.y;
+  run.reach = c.reach;
+  shell.runs.push_back(run);
+}
+
+struct Nearest {
+  double distance = 0;
+  double nx = 0, ny = 0;
+  Face face = Face::kTop;
+};
+
+// Out of sight: no ball is as large, and what is worked out from it stays finite.
+Nearest hidden(const Shell& shell) { return {2 * shell.radius, 1, 0, Face::kTop}; }
+
+// Nearest point of a face to (x, y), how far along, and the square of its distance.
+struct Foot {
+  double along, dx, dy, d2;
+};
+inline Foot foot_on(const LifterFace& f, double x, double y) {
+  const double along = std::min(std::max((x - f.x) * f.tx + (y - f.y) * f.ty, 0.0), f.length);
+  const double dx = f.x + along * f.tx - x, dy = f.y + along * f.ty - y;
+  return {along, dx, dy, dx * dx + dy * dy};
+}
+
+struct Closest {
   const LifterFace* face = nullptr;
-  double out = -std::numeric_limits<double>::infinity();
-  for (const LifterFace& f : shell.faces) {
+  Foot foot{0, 0, 0, kInfinity};
+};
+Closest closest_of(const Shell& shell, const Run& run, double x, double y) {
+  Closest best;
+  double within = kInfinity;
+  for (int b = run.first_block; b < run.last_block; ++b) {
+    const FaceBlock& block = shell.blocks[static_cast<std::size_t>(b)];
+    const double bx = x - block.x, by = y - block.y, far = within + block.reach;
+    if (bx * bx + by * by > far * far) continue;
+    for (int i = block.begin; i < block.end; ++i) {
+      const LifterFace& f = shell.faces[static_cast<std::size_t>(i)];
+      const Foot foot = foot_on(f, x, y);
+      if (!(foot.d2 < best.foot.d2)) continue;
+      best = {&f, foot};
+    }
+    within = std::sqrt(best.foot.d2);
+  }
+  return best;
+}
+
+// The point as the wall's nearest; `side` is 1 for a centre outside, -1 for one in the steel.
+Nearest point_of(const Closest& c, double x, double y, double side) {
+  const LifterFace& f = *c.face;
+  if (c.foot.along > 0 && c.foot.along < f.length) return {(x - f.x) * f.nx + (y - f.y) * f.ny, -f.nx, -f.ny, f.face};
+  const bool start = c.foot.along <= 0;
+  const Face face = start ? f.at_start : f.at_end;
+  const double d = std::sqrt(c.foot.d2);
+  if (d > 0) return {side * d, side * c.foot.dx / d, side * c.foot.dy / d, face};
+  const double ox = start ? f.sx : f.ex, oy = start ? f.sy : f.ey, o = std::hypot(ox, oy);
+  return {0, -ox / o, -oy / o, face};
+}
+
+// Is the point on the free side of the outline at the point of it that is closest?
+bool in_front(const Closest& c, double x, double y) {
+  const LifterFace& f = *c.face;
+  if (c.foot.along <= 0) return c.foot.dx * f.sx + c.foot.dy * f.sy <= 0;
+  if (c.foot.along >= f.length) return c.foot.dx * f.ex + c.foot.dy * f.ey <= 0;
+  return (x - f.x) * f.nx + (y - f.y) * f.ny >= 0;
+}
+
+// Is the point in the steel of a section? The axis is not, and each crossing of the outline on the way to it tells.
+bool in_steel(const Shell& shell, int section, double x, double y) {
+  bool inside = false;
+  for (const Run& run : shell.runs) {
+    if (run.section != section) continue;
+    for (int i = run.begin; i < run.end; ++i) {
+      const LifterFace& f = shell.faces[static_cast<std::size_t>(i)];
+      const double ax = f.x, ay = f.y, bx = ax + f.length * f.tx, by = ay + f.length * f.ty;
+      // Its ends lie on either side of the ray from the axis through the point, and it crosses short of the point.
+      const double a = x * ay - y * ax, b = x * by - y * bx;
+      if ((a > 0) == (b > 0)) continue;
+      const double s = a / (a - b), px = ax + s * (bx - ax), py = ay + s * (by - ay);
+      const double along = px * x + py * y;
+      if (along > 0 && along < x * x + y * y) inside = !inside;
+    }
+  }
+  return inside;
+}
+
+// A centre behind the run: in the steel and nearest to this run, or out of its sight.
+Nearest from_behind(const Shell& shell, const Run& run, double x, double y) {
+  if (!in_steel(shell, run.section, x, y)) return hidden(shell);
+  const Closest mine = closest_of(shell, run, x, y);
+  for (const Run& other : shell.runs) {
+    if (other.section != run.section || &other == &run) continue;
+    const double d2 = closest_of(shell, other, x, y).foot.d2;
+    if (d2 < mine.foot.d2 || (d2 == mine.foot.d2 && &other < &run)) return hidden(shell);
+  }
+  return point_of(mine, x, y, -1);
+}
+
+Nearest nearest_on_run(const Shell& shell, const Run& run, double x, double y) {
+  if (!run.convex) {
+    const Closest c = closest_of(shell, run, x, y);
+    return in_front(c, x, y) ? point_of(c, x, y, 1) : from_behind(shell, run, x, y);
+  }
+  // The face from which the point stands out farthest holds the nearest point of a convex body, or one of its ends.
+  const LifterFace* face = nullptr;
+  double out = -kInfinity;
+  for (int i = run.begin; i < run.end; ++i) {
+    const LifterFace& f = shell.faces[static_cast<std::size_t>(i)];
     const double d = (x - f.x) * f.nx + (y - f.y) * f.ny;
     if (d > out) {
       out = d;
       face = &f;
     }
   }
-  if (out <= 0) {
-    // A centre inside is pushed out through the nearest face that is not in the steel.
-    out = -std::numeric_limits<double>::infinity();
-    for (const LifterFace& f : shell.faces) {
-      const double d = (x - f.x) * f.nx + (y - f.y) * f.ny;
-      if (&f != &shell.faces.front() && d > out) {
-        out = d;
-        face = &f;
-      }
-    }
-    return {out, -face->nx, -face->ny};
-  }
+  if (out <= 0) return from_behind(shell, run, x, y);
   const double along = (x - face->x) * face->tx + (y - face->y) * face->ty;
-  if (along >= 0 && along <= face->length) return {out, -face->nx, -face->ny};
+  if (along >= 0 && along <= face->length) return {out, -face->nx, -face->ny, face->face};
   const double end = along < 0 ? 0 : face->length;
   const double dx = face->x + end * face->tx - x, dy = face->y + end * face->ty - y;
   const double d = std::sqrt(dx * dx + dy * dy);
-  return {d, dx / d, dy / d};
+  return {d, dx / d, dy / d, along < 0 ? face->at_start : face->at_end};
+}
+
+}  // namespace
+
+Shell make_shell(const MillShape& shape) {
+  Shell shell;
+  shell.radius = shape.radius;
+  shell.tip_radius = shape.sections.empty() ? shape.radius : shape.tip_radius;
+  if (shape.sections.empty()) return shell;
+  shell.lifter_count = shape.lifter_count;
+  shell.plate_covered = true;
+
+  std::vector<std::size_t> first_run{0};  // of each section
+  double low = shape.radius, high = 0;
+  for (std::size_t s = 0; s < shape.sections.size(); ++s) {
+    const LifterSection& section = shape.sections[s];
+    shell.plate_covered = shell.plate_covered && section.smooth;
+    const std::vector<Vec2> chain(section.chain.rbegin(), section.chain.rend());
+    const std::vector<std::size_t> cuts = cuts_of(chain, section.smooth);
+    for (std::size_t c = 0; c + 1 < cuts.size(); ++c)
+      add_run(shell, shape, static_cast<int>(s),
+              std::vector<Vec2>(chain.begin() + static_cast<std::ptrdiff_t>(cuts[c]),
+                                chain.begin() + static_cast<std::ptrdiff_t>(cuts[c + 1]) + 1));
+    first_run.push_back(shell.runs.size());
+    for (const Vec2& p : chain) {
+      low = std::min(low, p.x());
+      high = std::max(high, p.x());
+    }
+  }
+  shell.lifter_centre = (low + high) / 2;
+  for (const LifterSection& section : shape.sections)
+    for (const Vec2& p : section.chain)
+      shell.lifter_reach = std::max(shell.lifter_reach, std::hypot(p.x() - shell.lifter_centre, p.y()));
+
+  for (int k = 0; k < shell.lifter_count; ++k) {
+    shell.first_feature.push_back(static_cast<int>(shell.features.size()) + 1);
+    const int section = shape.section_of[static_cast<std::size_t>(k)];
+    if (section < 0) {
+      shell.plate_covered = false;
+      continue;
+    }
+    for (std::size_t r = first_run[static_cast<std::size_t>(section)];
+         r < first_run[static_cast<std::size_t>(section) + 1]; ++r) {
+      const Run& run = shell.runs[r];
+      shell.features.push_back(
+          {std::cos(k * shape.pitch()), std::sin(k * shape.pitch()), run.x, run.y, run.reach, static_cast<int>(r), k});
+    }
+  }
+  shell.first_feature.push_back(static_cast<int>(shell.features.size()) + 1);
+  return shell;
 }
 
 ShellPose pose_of(double mill_angle) { return {std::cos(mill_angle), std::sin(mill_angle)}; }
@@ -69,24 +271,34 @@ ShellPose pose_of(double mill_angle) { return {std::cos(mill_angle), std::sin(mi
 WallPoint nearest_on_wall(const Shell& shell, const ShellPose& pose, int feature, double x, double y) {
   if (feature == 0) {
     const double rho = std::sqrt(x * x + y * y);
-    return {shell.radius - rho, x / rho, y / rho, Face::kPlate};
+    return {shell.plate_covered ? 2 * shell.radius : shell.radius - rho, x / rho, y / rho, Face::kPlate};
   }
-  const Direction l = lifter_direction(shell, pose, feature - 1);
-  const Nearest near = nearest_on_lifter(shell, x * l.cos + y * l.sin, y * l.cos - x * l.sin);
-  return {near.distance, near.nx * l.cos - near.ny * l.sin, near.nx * l.sin + near.ny * l.cos, Face::kTop};
+  const Feature& f = shell.features[static_cast<std::size_t>(feature) - 1];
+  const Direction l = direction_of(f, pose);
+  const Nearest near =
+      nearest_on_run(shell, shell.runs[static_cast<std::size_t>(f.run)], x * l.cos + y * l.sin, y * l.cos - x * l.sin);
+  return {near.distance, near.nx * l.cos - near.ny * l.sin, near.nx * l.sin + near.ny * l.cos, near.face};
 }
 
 void features_near(const Shell& shell, double mill_angle, double x, double y, double reach, std::vector<int>& out) {
   const double rho = std::hypot(x, y);
   if (rho + reach <= shell.tip_radius) return;
-  if (rho + reach > shell.radius) out.push_back(0);
-  if (shell.lifter_count == 0) return;
+  if (rho + reach > shell.radius && !shell.plate_covered) out.push_back(0);
+  if (shell.features.empty()) return;
 
   const auto first = static_cast<std::ptrdiff_t>(out.size());
   const ShellPose pose = pose_of(mill_angle);
+  // Whether the point is in front is not asked: on its way to where the list is next renewed it may come round a tip.
   const auto add_if_near = [&](int k) {
-    const Direction d = lifter_direction(shell, pose, k);
-    if (nearest_on_lifter(shell, x * d.cos + y * d.sin, y * d.cos - x * d.sin).distance < reach) out.push_back(k + 1);
+    for (int feature = shell.first_feature[static_cast<std::size_t>(k)];
+         feature < shell.first_feature[static_cast<std::size_t>(k) + 1]; ++feature) {
+      const Feature& f = shell.features[static_cast<std::size_t>(feature) - 1];
+      const Direction l = direction_of(f, pose);
+      const double u = x * l.cos + y * l.sin, v = y * l.cos - x * l.sin;
+      if (std::hypot(u - f.x, v - f.y) > reach + f.reach) continue;
+      if (closest_of(shell, shell.runs[static_cast<std::size_t>(f.run)], u, v).foot.d2 < reach * reach)
+        out.push_back(feature);
+    }
   };
   // Only lifters whose bounding circle can be in reach: |angle| <= asin(span / rho).
   const int n = shell.lifter_count;
@@ -102,6 +314,15 @@ void features_near(const Shell& shell, double mill_angle, double x, double y, do
   for (std::int64_t k = nearest - each_side; k <= nearest + each_side; ++k)
     add_if_near(static_cast<int>(((k % n) + n) % n));
   std::sort(out.begin() + first, out.end());
+}
+
+int lifter_around(const Shell& shell, double x, double y) {
+  if (std::hypot(x, y) <= shell.tip_radius) return -1;
+  for (const Feature& f : shell.features) {
+    const double u = x * f.cos + y * f.sin, v = y * f.cos - x * f.sin;
+    if (in_steel(shell, shell.runs[static_cast<std::size_t>(f.run)].section, u, v)) return f.lifter;
+  }
+  return -1;
 }
 
 }  // namespace tumble::sim

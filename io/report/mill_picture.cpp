@@ -127,7 +127,7 @@ std::string mill_picture(const MillShape& shape, const ChargeMotion& motion, con
   const Canvas canvas{kScale / shape.radius};
   const double tip = shape.tip_radius * canvas.per_metre;
   std::string inside;
-  for (const auto& p : outline(shape, shape.radius / 40))
+  for (const auto& p : thinned(outline(shape, shape.radius / 40), 5e-4 * shape.radius))
     inside += std::string(inside.empty() ? "M" : "L") + canvas.point(p.x(), p.y());
 
   std::string out =

@@ -14,12 +14,8 @@ double largest_overlap(const MillModel& model, const Charge& c) {
     worst = std::max(worst, std::hypot(c.x[i], c.y[i]) + c.radius[i] - model.shell.radius);
     for (std::size_t j = i + 1; j < c.size(); ++j)
       worst = std::max(worst, c.radius[i] + c.radius[j] - std::hypot(c.x[i] - c.x[j], c.y[i] - c.y[j]));
-    for (int k = 0; k < model.shell.lifter_count; ++k) {
-      const Direction d = lifter_direction(model.shell, ShellPose{}, k);
-      worst = std::max(worst, c.radius[i] - nearest_on_lifter(model.shell, c.x[i] * d.cos + c.y[i] * d.sin,
-                                                              c.y[i] * d.cos - c.x[i] * d.sin)
-                                                .distance);
-    }
+    for (int f = 1; f < feature_count(model.shell); ++f)
+      worst = std::max(worst, c.radius[i] - nearest_on_wall(model.shell, {}, f, c.x[i], c.y[i]).distance);
   }
   return worst;
 }
