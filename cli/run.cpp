@@ -77,7 +77,7 @@ void run(Options o) {
   report.film = &film;
   report.deviation = &deviation;
   report.film_file = film_file;
-  report.energy_error = summary.energy_error;
+  report.summary = &summary;
   report.config_text = io::to_toml(config);
   report.version = kVersion;
   io::write_run_report(report_file, report);

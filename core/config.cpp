@@ -258,15 +258,23 @@ double slice_mass(const Config& config, const std::vector<int>& counts) {
   return mass;
 }
 
-double slice_count(const Config& config) {
-  if (config.mill.slices) return *config.mill.slices;
+SliceRule slice_rule(const Config& config) {
+  if (config.mill.slices) return SliceRule::kGiven;
+  if (std::isnan(config.mill.length)) return SliceRule::kNoLength;
   const std::vector<int> counts = class_counts(config);
   double diameters = 0, balls = 0;
   for (std::size_t i = 0; i < counts.size(); ++i) {
     diameters += counts[i] * 2 * config.charge.balls[i].radius;
     balls += counts[i];
   }
-  if (std::isnan(config.mill.length) || config.mill.length < 1.5 * diameters / balls) return 1;
+  return config.mill.length < 1.5 * diameters / balls ? SliceRule::kThin : SliceRule::kWeight;
+}
+
+double slice_count(const Config& config) {
+  const SliceRule rule = slice_rule(config);
+  if (rule == SliceRule::kGiven) return *config.mill.slices;
+  if (rule != SliceRule::kWeight) return 1;
+  const std::vector<int> counts = class_counts(config);
   const double volume = kPi * config.mill.diameter * config.mill.diameter / 4 * config.mill.length;
   return filling_of(config, counts) * volume * config.charge.bulk_density / slice_mass(config, counts);
 }

@@ -120,8 +120,14 @@ std::vector<int> class_counts(const Config& config);
 double filling_of(const Config& config, const std::vector<int>& counts);
 double slice_mass(const Config& config, const std::vector<int>& counts);
 
-// How many slices make up the mill: `mill.slices`; 1 without a length or below 1.5 mean ball diameters; else
-// J x shell area x length x bulk density / slice mass (Mishra & Rajamani 1992, p. 603), not rounded.
+// How many slices make up the mill, not rounded, and by which rule.
+enum class SliceRule {
+  kGiven,     // mill.slices
+  kNoLength,  // 1: the slice is all that is known
+  kThin,      // 1: the length is below 1.5 number-mean ball diameters
+  kWeight,    // J x shell area x length x bulk density / slice mass (Mishra & Rajamani 1992, p. 603)
+};
+SliceRule slice_rule(const Config& config);
 double slice_count(const Config& config);
 
 const char* name_of(LifterProfile profile);

@@ -77,9 +77,12 @@ const std::array kEffects{
            kRolling},
     Effect{"friction_weakening", "contact", "friction that falls with the sliding speed of the contact",
            "mu(v_t) = mu (1 - drop (1 - exp(-v_t / v_s)))",
-           "Moore, Principles and Applications of Tribology (1975); Mishra & Rajamani 1992, p. 603", kWeakening},
+           "model; Moore, Principles and Applications of Tribology (1975), by Mishra & Rajamani 1992, p. 603",
+           kWeakening},
     Effect{"wall_friction", "contact", "another friction at shell and lifters than the model's",
-           "mu_wall -> mu_wall (1 + increase)", "Moys et al.; Rose & Sullivan, Ball, Tube and Rod Mills (1958)",
+           "mu_wall -> mu_wall (1 + increase)",
+           "model; friction of balls on liners as measured: Peng et al., Tribol. Trans. (2020), "
+           "doi:10.1080/10402004.2020.1831120",
            kWallFriction},
     Effect{"fluid_drag", "ball", "drag and spin friction of a fluid at rest that fills the mill",
            "F = -(6 pi eta r + C_d rho pi r^2 |v| / 2) v; M = -8 pi eta r^3 omega",
@@ -89,7 +92,7 @@ const std::array kEffects{
            "Archimedes; drag as fluid_drag", kPool},
     Effect{"impact_restitution", "contact", "restitution that falls with the normal speed of the impact",
            "e(v_n) = e (1 - drop (1 - exp(-v_n / v_e))), v_n at first touch",
-           "Johnson, Contact Mechanics (1985), ch. 11 (plastic impact: e falls with speed)", kRestitution},
+           "model; plastic impact: Johnson, Contact Mechanics (1985), sec. 11.5", kRestitution},
     Effect{
         "end_wall_friction", "ball", "friction of the turning end walls of a slice on every ball",
         "F = -k_t s, |F| <= coefficient m g + pressure sum |F_n|; s slides against the ends, which turn with the shell",
@@ -99,7 +102,7 @@ const std::array kEffects{
            "Derjaguin, Muller & Toporov, J. Colloid Interface Sci. 53 (1975) 314 (pull-off force ~ R)", kCohesion},
     Effect{"lifter_wear", "shell", "lifters of lesser height with rounded edges, all or single ones",
            "height -> height (1 - height_loss); convex edges become arcs of radius `rounding`",
-           "geometry of worn liners, Kalala et al., Miner. Eng. 18 (2005) 1386", kWear},
+           "geometry; how lifters wear: Yahyaei & Banisi, Miner. Eng. 23 (2010) 1213", kWear},
     Effect{"hertz_contact", "contact", "stiffness that grows with the overlap (spheres; layers of particles between)",
            "F_n = (1 - share) k_n d + share k_h d^(3/2); k_h = (5/4) k_n d_0^(-1/2) (R / R_0)^(1/2), d_0 the overlap "
            "of two "

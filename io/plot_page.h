@@ -39,8 +39,9 @@ struct Plot {
   std::string title = {};
   std::string x_label = {}, y_label = {};  // with unit: "speed, share of critical", "torque, N m"
   bool x_log = false, y_log = false;
-  bool y_from_zero = false;  // the axis includes 0 (linear axes only)
-  bool tall = false;         // takes the page's width and more height; else two share a row where there is room
+  bool y_from_zero = false;     // the axis includes 0 (linear axes only)
+  bool x_is_direction = false;  // x in degrees, which may run past 360: named in [0, 360)
+  bool tall = false;            // takes the page's width and more height; else two share a row where there is room
   std::vector<PlotSeries> series = {};
   std::vector<PlotRule> upright = {}, level = {};
   std::string caption = {};

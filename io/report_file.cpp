@@ -18,8 +18,11 @@
 #include "io/json_number.h"
 #include "io/output.h"
 #include "io/report/embedded.h"
+#include "io/report/figure.h"
 #include "io/report/html.h"
 #include "io/report/mill_picture.h"
+#include "io/report/run_sections.h"
+#include "io/report/section.h"
 
 namespace tumble::io {
 namespace fs = std::filesystem;
@@ -135,19 +138,18 @@ std::string keys_of(const RunReport& r) {
   out += key("Torque of one slice", with_error(truth.torque) + " N\u00a0m",
              "from the charge’s weight " + number(truth.torque_closure.value, truth.torque.se) + " N\u00a0m" +
                  (std::isfinite(gap) ? fmt::format(", {:.2g} % apart", 100 * gap) : ""));
-  const Estimate power{truth.torque.value * r.setup->mill_speed, truth.torque.se * r.setup->mill_speed};
-  const double slices = slice_count(r.setup->config);
-  out += key("Power of one slice", with_error(power) + "\u00a0W",
-             slices == 1 ? "the slice is the mill"
-                         : fmt::format("the mill’s {:.3g} slices: {} W", slices,
-                                       number(power.value * slices, power.se * slices)));
+  const RunSummary& s = *r.summary;
+  out += key("Power of one slice", with_error(s.power) + "\u00a0W",
+             s.slices == 1 ? "the slice is the mill"
+                           : fmt::format("the mill’s {:.3g} slices: {} W", s.slices,
+                                         number(s.mill_power.value, s.mill_power.se)));
   out += key("Toe in the film", degrees_of(film.toe_deg), "simulation " + degrees_of(truth.toe_deg));
   out += key("Shoulder in the film", degrees_of(film.shoulder_deg), "simulation " + degrees_of(truth.shoulder_deg));
   if (film.frames > 0)
     out += key("Balls seen in a frame", fmt::format("{:.4g}", static_cast<double>(film.tracks.size()) / film.frames),
                fmt::format("of {}", r.setup->balls.size()));
-  if (std::isfinite(r.energy_error))
-    out += key("Energy balance", fmt::format("{:.2g} %", 100 * std::abs(r.energy_error)),
+  if (std::isfinite(s.energy_error))
+    out += key("Energy balance", fmt::format("{:.2g} %", 100 * std::abs(s.energy_error)),
                "of the drive’s work is not accounted for");
   return out;
 }
@@ -225,10 +227,6 @@ std::string torque_caption(const ChargeMotion& truth) {
   return text;
 }
 
-constexpr const char* kSpectrumFigure =
-    "<figure><div class=\"plot\" id=\"plot-spectrum\"></div><figcaption>Impacts by the energy that is lost in them, "
-    "per second and bin.</figcaption></figure>";
-
 // Seven digits are more than a plot can show.
 Json plotted(double v) { return json_number(v, 7); }
 
@@ -269,47 +267,24 @@ int emptiest_direction(const std::array<double, 360>& occupancy) {
   return static_cast<int>(wrap_360(30 * std::round((degrees(std::atan2(s, c)) + 180) / 30)));
 }
 
-// Bins without an impact have no place on a logarithmic axis; those at the ends are left out.
-Json spectrum_of(const ImpactSpectrum& spectrum) {
-  Json energy = Json::array(), ball_ball = Json::array(), ball_wall = Json::array();
-  const std::size_t bins = spectrum.edges_J.empty() ? 0 : spectrum.edges_J.size() - 1;
-  const auto at = [](const std::vector<double>& v, std::size_t i) {
-    return i < v.size() && v[i] > 0 ? v[i] : kNotGiven;
-  };
-  const auto empty = [&](std::size_t i) {
-    return std::isnan(at(spectrum.ball_ball, i)) && std::isnan(at(spectrum.ball_wall, i));
-  };
-  std::size_t begin = 0, end = bins;
-  while (begin < end && empty(begin)) ++begin;
-  while (end > begin && empty(end - 1)) --end;
-  for (std::size_t i = begin; begin < end && i <= end; ++i) {
-    const std::size_t bin = std::min(i, end - 1);  // the last edge closes the last step
-    energy.push_back(plotted(spectrum.edges_J[i]));
-    ball_ball.push_back(plotted(at(spectrum.ball_ball, bin)));
-    ball_wall.push_back(plotted(at(spectrum.ball_wall, bin)));
-  }
-  return {{"energy", energy}, {"ball_ball", ball_ball}, {"ball_wall", ball_wall}};
-}
-
-Json data_of(const RunReport& r, const Json& spectrum) {
+Json data_of(const RunReport& r, int cut, const Json& plots) {
   const ChargeMotion &truth = *r.truth, &film = *r.film;
   const auto same = [](double v) { return v; };
   const double film_seconds = film.profile.empty() ? 0.0 : film.profile.back().time + 1 / film.frames_per_second;
-  return {{"occupancy",
-           {{"start", emptiest_direction(truth.ring_occupancy)},
-            {"truth", column(truth.ring_occupancy, same)},
-            {"film", column(film.ring_occupancy, same)}}},
-          {"toe", {plotted(truth.toe_deg.value), plotted(film.toe_deg.value)}},
-          {"shoulder", {plotted(truth.shoulder_deg.value), plotted(film.shoulder_deg.value)}},
-          {"truth", per_frame(truth)},
-          {"film", per_frame(film)},
-          {"film_seconds", plotted(film_seconds)},
-          {"torque",
-           {{"time", column(truth.torque_series, [](const TorqueRow& row) { return row.time; })},
-            {"torque", column(truth.torque_series, [](const TorqueRow& row) { return row.torque; })},
-            {"passage", plotted(lifter_passage(*r.setup))},
-            {"mean", {plotted(truth.torque.value), plotted(std::isfinite(truth.torque.se) ? truth.torque.se : 0.0)}}}},
-          {"spectrum", spectrum}};
+  return {
+      {"occupancy",
+       {{"start", cut}, {"truth", column(truth.ring_occupancy, same)}, {"film", column(film.ring_occupancy, same)}}},
+      {"toe", {plotted(truth.toe_deg.value), plotted(film.toe_deg.value)}},
+      {"shoulder", {plotted(truth.shoulder_deg.value), plotted(film.shoulder_deg.value)}},
+      {"truth", per_frame(truth)},
+      {"film", per_frame(film)},
+      {"film_seconds", plotted(film_seconds)},
+      {"torque",
+       {{"time", column(truth.torque_series, [](const TorqueRow& row) { return row.time; })},
+        {"torque", column(truth.torque_series, [](const TorqueRow& row) { return row.torque; })},
+        {"passage", plotted(lifter_passage(*r.setup))},
+        {"mean", {plotted(truth.torque.value), plotted(std::isfinite(truth.torque.se) ? truth.torque.se : 0.0)}}}},
+      {"plots", plots}};
 }
 
 std::string picture_caption(const ChargeMotion& m) {
@@ -324,7 +299,14 @@ void write_run_report(const fs::path& path, const RunReport& r) {
   const Config& config = r.setup->config;
   const MillShape shape = make_mill_shape(config);
   const Film film = film_of(r, path);
-  const Json spectrum = spectrum_of(r.result->spectrum);
+  const int cut = emptiest_direction(r.truth->ring_occupancy);
+  std::string sections;
+  Json plots = Json::array();
+  for (const PageSection& section : run_sections(r, cut)) {
+    const std::string id = fmt::format("run-{}", plots.size());
+    sections += section_html(section, id);
+    for (Json& plot : plots_json(section.plots, id)) plots.push_back(std::move(plot));
+  }
   const std::string title = title_of(config);
   write_text(
       path,
@@ -345,13 +327,13 @@ void write_run_report(const fs::path& path, const RunReport& r) {
               {"film_picture", mill_picture(shape, *r.film, r.truth, "Mean charge as found in the film")},
               {"film_picture_caption", "Broken lines: the simulation’s toe and shoulder."},
               {"torque_caption", escaped(torque_caption(*r.truth))},
-              {"spectrum", spectrum["energy"].empty() ? "" : kSpectrumFigure},
+              {"sections", sections},
               {"table_intro", "The analyser saw the film, the mill’s drawing and the ball sizes, and nothing else."},
               {"rows", rows_of(*r.deviation)},
               {"facts", facts_of(r)},
               {"config", escaped(r.config_text)},
               {"footer", footer_html(r.version)},
-              {"data", script_json(data_of(r, spectrum))},
+              {"data", script_json(data_of(r, cut, plots))},
               {"uplot_js", std::string(uplot_js)},
               {"plots_js", std::string(plots_js)},
               {"script", std::string(run_js)}}));

@@ -6,6 +6,7 @@
 #include "core/charge_motion.h"
 #include "core/deviation.h"
 #include "core/frame.h"
+#include "core/run_summary.h"
 
 namespace tumble::io {
 
@@ -13,11 +14,11 @@ namespace tumble::io {
 struct RunReport {
   const RunSetup* setup = nullptr;
   const RunResult* result = nullptr;
+  const RunSummary* summary = nullptr;
   const ChargeMotion* truth = nullptr;   // from the run file
   const ChargeMotion* film = nullptr;    // from the rendered film
   const Deviation* deviation = nullptr;  // truth against film
   std::filesystem::path film_file;       // embedded, so that the report opens from disk and by mail
-  double energy_error = kNotGiven;       // (drive work - energy change - dissipation) / drive work
   std::string config_text;               // MILL.toml as it was run
   std::string version;
   double seconds_simulating = 0, seconds_rendering = 0, seconds_analysing = 0;

@@ -218,6 +218,7 @@ const tumblePlots = (() => {
     };
     const values = (u, at) => at.map(v => in_words(v, 6));
     const ticks = log => log ? { values, splits: log_ticks, filter: (u, at) => at } : { values };
+    const round = { values: (u, at) => at.map(v => in_words(degree(v), 6)), incrs: [1, 2, 5, 10, 15, 30, 45, 60, 90] };
     const wide = (u, values, index, cycle) => {
       if (cycle > 1) return u.axes[index]._size;
       u.ctx.font = font.replace("12px", 12 * devicePixelRatio + "px");
@@ -230,10 +231,10 @@ const tumblePlots = (() => {
         x: { time: false, distr: spec.x_log ? 3 : 1, range: (u, low, high) => window(low, high) },
         y: { distr: spec.y_log ? 3 : 1, range: u => range_of(spec.y_log, heights(u)) },
       },
-      axes: [axis(spec.x_label, Object.assign(ticks(spec.x_log), { space: 60 })), axis(spec.y_label, Object.assign(ticks(spec.y_log), { size: wide }))],
+      axes: [axis(spec.x_label, Object.assign(spec.x_direction ? round : ticks(spec.x_log), { space: 60 })), axis(spec.y_label, Object.assign(ticks(spec.y_log), { size: wide }))],
       legend: { markers: { stroke: (u, i) => `var(--${palette[spec.series[i - 1].colour % palette.length]})`, fill: () => "transparent" } },
       cursor: { y: false, points: { size: 6 }, dataIdx: nearest },
-      series: [{ label: spec.x_label, value }, ...spec.series.map((s, k) => s.mark == "points"
+      series: [{ label: spec.x_label, value: spec.x_direction ? (u, v) => value(u, v == null ? v : degree(v)) : value }, ...spec.series.map((s, k) => s.mark == "points"
         ? line(s.label, stroke[k], { value, width: 0, paths: () => null, points: { show: true, size: 7, width: 1.6, stroke: stroke[k], fill: colour("paper") } })
         : line(s.label, stroke[k], { value, spanGaps: false, dash: s.dashed ? [6, 4] : [], ...(s.mark == "steps" ? { paths: uPlot.paths.stepped({ align: 1 }) } : {}) }))],
       hooks: {

@@ -1,7 +1,7 @@
 "use strict";
 (() => {
   const data = JSON.parse(document.getElementById("data").textContent);
-  const { ink, truth, found, faint, pale, digits, degree, axis, line, uprights, band, plot } = tumblePlots;
+  const { ink, truth, found, faint, pale, digits, degree, axis, line, uprights, band, plot, drawAll } = tumblePlots;
 
   // The charge lies across 3 o'clock: the axis begins where there is least of it.
   const start = data.occupancy.start;
@@ -44,14 +44,7 @@
     hooks: { drawClear: [band(mean == null ? null : mean - error, mean + error, found)] },
   }, [data.torque.time, data.torque.torque, smooth(data.torque.time, data.torque.torque, passage)]));
 
-  const tens = v => v == null ? "" : v.toExponential(0).replace("e+", "e");
-  plot("plot-spectrum", {
-    scales: { x: { time: false, distr: 3 }, y: { distr: 3 } },
-    axes: [axis("energy lost in an impact, J", { values: (u, t) => t.map(tens) }), axis("impacts per second", { size: 60, values: (u, t) => t.map(tens) })],
-    series: [{ label: "energy", value: (u, v) => v == null ? "–" : v.toExponential(2) + " J" },
-             line("ball on ball", truth, { spanGaps: false, paths: uPlot.paths.stepped({ align: 1 }), value: (u, v) => v == null ? "–" : v.toPrecision(3) }),
-             line("ball on wall", found, { spanGaps: false, paths: uPlot.paths.stepped({ align: 1 }), value: (u, v) => v == null ? "–" : v.toPrecision(3) })],
-  }, [data.spectrum.energy, data.spectrum.ball_ball, data.spectrum.ball_wall]);
+  drawAll(data.plots);
 
   // Where the film is now, in the plots over time.
   const film = document.querySelector("video"), span = data.film_seconds;
