@@ -223,7 +223,7 @@ void add_calibrate(CLI::App& app) {
       ->required();
   repeatable(verb->add_option("--set", o->sets, "Override a key for all runs, such as --set run.revolutions=6"));
   verb->add_option("--simulations", o->simulations,
-                   "Runs to fit with (default: 12 an experiment for one key, 24 for two, 38 for three)")
+                   "Runs to fit with (default: 15 an experiment for one key, 30 for two, 48 for three)")
       ->check(CLI::Range(1, 1000000));
   verb->add_option("--repeat", o->repeats, "Runs of each experiment at the fitted values")
       ->check(CLI::Range(2, 1000))

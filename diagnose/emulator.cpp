@@ -12,8 +12,8 @@ namespace {
 // What is expected before the runs speak; spreads are one standard deviation of the logarithm. No response is quite a
 // polynomial, and a dozen scattered runs cannot show by how much: without the amplitude's expectation they would claim
 // that it is one, all with the same sign, and the error bars would be too small.
-constexpr double kUsualAmplitude = 0.1, kAmplitudeSpread = 0.7;  // of the deviation [of the values' rms]
-constexpr double kUsualWidth = 0.6, kWidthSpread = 0.7;          // of the deviation [of the box]
+constexpr double kUsualAmplitude = 0.05, kAmplitudeSpread = 0.7;  // of the deviation [of the values' half range]
+constexpr double kUsualWidth = 0.6, kWidthSpread = 0.7;           // of the deviation [of the box]
 constexpr double kHintSpread = 0.4;  // of the runs' scatter from packing to packing about their own standard error
 constexpr double kJitter = 1e-10;    // keeps the matrix invertible where runs have no scatter
 constexpr int kMostCalls = 400;
@@ -37,7 +37,7 @@ Emulator::Emulator(std::vector<std::vector<double>> at, const std::vector<double
   values_ = Eigen::Map<const Eigen::VectorXd>(values.data(), n);
   offset_ = values_.mean();
   values_.array() -= offset_;
-  scale_ = std::max(std::sqrt(values_.squaredNorm() / double(n)), 1e-12 * std::max(1.0, std::abs(offset_)));
+  scale_ = std::max((values_.maxCoeff() - values_.minCoeff()) / 2, 1e-12 * std::max(1.0, std::abs(offset_)));
   values_ /= scale_;
   basis_.resize(n, basis(at_.front()).size());
   for (Eigen::Index i = 0; i < n; ++i) basis_.row(i) = basis(at_[static_cast<std::size_t>(i)]).transpose();

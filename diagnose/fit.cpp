@@ -262,7 +262,7 @@ class Fitter {
 }  // namespace
 
 std::size_t default_simulations(std::size_t keys, std::size_t experiments) {
-  return experiments * ((keys + 1) * (keys + 2) + 6 * keys);
+  return experiments * (3 * (keys + 1) * (keys + 2) / 2 + 6 * keys);
 }
 
 std::size_t least_simulations(std::size_t keys, std::size_t experiments) {
