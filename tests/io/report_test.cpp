@@ -59,6 +59,7 @@ TEST(Html, NumbersHaveTheDigitsTheirErrorAllows) {
 struct Story {
   RunSetup setup;
   RunResult result;
+  RunSummary summary;
   ChargeMotion truth, film;
   Deviation deviation;
   RunReport report;
@@ -72,9 +73,35 @@ struct Story {
     setup.time_step = 1e-5;
     setup.mill_speed = 4.7;
     result.spin_up_revolutions = 2;
-    result.spectrum.edges_J = {1e-6, 1e-5, 1e-4, 1e-3};
-    result.spectrum.ball_ball = {0, 7.5, 0};
-    result.spectrum.ball_wall = {0, 0, 2.5};
+    setup.dissipation_causes = {"ball_ball_normal", "ball_ball_sliding", "ball_wall_normal", "ball_wall_sliding"};
+    auto& s = result.spectrum;
+    s.edges_J = {1e-6, 1e-5, 1e-4, 1e-3};
+    s.ball_ball = {0, 7.5, 0};
+    s.ball_ball_normal = {2, 5.5, 0};
+    s.ball_ball_tangential = {7.5, 0, 0};
+    s.ball_wall = s.ball_wall_normal = {0, 0, 2.5};
+    s.ball_wall_tangential = {2.5, 0, 0};
+    result.falls = {{0, 0.25, 0.5}, {4, 0.5}};
+    result.places.angle_edges_deg = {0, 90, 180, 270, 360};
+    for (auto* faces : {&result.places.frequency, &result.places.power})
+      for (auto& face : *faces) face.assign(4, 0);
+    result.places.frequency[1] = {0, 0, 2, 0.5};
+    result.places.power[1] = {0, 0, 0.375, 0.125};
+    result.places.frequency[0] = {1, 0, 0, 0};
+    result.places.power[0] = {1.5, 0, 0, 0};
+    result.places.lifter_frequency.assign(12, 0.25);
+    result.places.lifter_power.assign(12, 0.0625);
+    summary.torque = {8.125, 0.25};
+    summary.torque_closure = {8.25, 0.25};
+    summary.torque_external = {0, 0};
+    summary.power = {40, 1};
+    summary.slices = 3;
+    summary.mill_torque = {24.375, 0.75};
+    summary.mill_power = {120, 3};
+    summary.dissipation = {{10, 0.5}, {12, 0.5}, {8, 0.5}, {9, 0.5}};
+    summary.stored_power = 1;
+    summary.time = {0, 1.0 / 60};
+    summary.locked = summary.external = {0, 0};
     for (auto* m : {&truth, &film}) {
       m->frames = 2;
       m->frames_per_second = 60;
@@ -94,6 +121,7 @@ struct Story {
                              {"torque_N_m", "N m", truth.torque, {}, kNotGiven, kNotGiven, kNotGiven}};
     report.setup = &setup;
     report.result = &result;
+    report.summary = &summary;
     report.truth = &truth;
     report.film = &film;
     report.deviation = &deviation;
@@ -146,9 +174,77 @@ TEST_F(Report, DrawsWhatIsInTheFiles) {
   EXPECT_EQ(data["occupancy"]["start"], 120);                  // opposite the charge's middle, 295 degrees
   EXPECT_EQ(data["truth"]["shoulder"], Json({359.0, 360.5}));  // no jump at 3 o'clock
   EXPECT_EQ(data["torque"]["torque"], Json({8.0, 8.25}));
-  EXPECT_EQ(data["spectrum"]["energy"], Json({1e-5, 1e-4, 1e-3}));  // the bins with impacts
-  EXPECT_EQ(data["spectrum"]["ball_ball"], Json({7.5, nullptr, nullptr}));
   EXPECT_NEAR(data["film_seconds"].get<double>(), 2.0 / 60, 1e-6);
+}
+
+// The plot whose page gives it this title.
+Json plot_titled(const std::string& page, const Json& data, const std::string& title) {
+  const auto at = page.find("<h3>" + title + "</h3>");
+  if (at == std::string::npos) return nullptr;
+  const auto id = page.find("id=\"", at) + 3;
+  const std::string quoted = page.substr(id, page.find('"', id + 1) + 1 - id);
+  for (const Json& plot : data["plots"])
+    if (plot["id"].dump() == quoted) return plot;
+  return nullptr;
+}
+
+TEST_F(Report, DrawsImpactsAsNumbersAndAsPower) {
+  const std::string page = page_of({});
+  const Json data = data_in(page);
+  const Json impacts = plot_titled(page, data, "Impacts by energy, ball on ball");
+  const Json power = plot_titled(page, data, "Power by energy of impact, ball on ball");
+  ASSERT_FALSE(impacts.is_null() || power.is_null());
+  EXPECT_EQ(impacts["series"][0]["x"], Json({1e-5, 1e-4, 1e-3}));  // the bins with impacts, of any kind
+  EXPECT_EQ(impacts["series"][0]["y"], Json({7.5, nullptr, nullptr}));
+  EXPECT_EQ(impacts["series"][1]["y"], Json({5.5, nullptr, nullptr}));
+  const double middle = 7.5 * std::sqrt(1e-5 * 1e-4);
+  EXPECT_NEAR(power["series"][0]["y"][0].get<double>(), middle, 1e-9);
+  EXPECT_NEAR(power["upright"][0]["at"].get<double>(), std::sqrt(1e-5 * 1e-4), 1e-9);  // half of the one bin
+  EXPECT_TRUE(says(page, "goes in impacts of more than 0.00032 J")) << "ball on wall: half of its one bin";
+
+  const Json falls = plot_titled(page, data, "Fall heights");
+  ASSERT_FALSE(falls.is_null());
+  EXPECT_EQ(falls["series"][0]["x"], Json({0, 0.25, 0.5}));
+  EXPECT_EQ(falls["series"][0]["y"], Json({4, 0.5, 0.5}));
+}
+
+// Cut open opposite the charge, at 120 degrees: the bins from 180 on come first, the others a turn later.
+TEST_F(Report, LaysImpactsRoundTheShell) {
+  const std::string page = page_of({});
+  const Json where = plot_titled(page, data_in(page), "Where on the shell");
+  ASSERT_FALSE(where.is_null());
+  ASSERT_EQ(where["series"].size(), 2u) << "faces without an impact are left out";
+  const Json& leading = where["series"][1];
+  EXPECT_EQ(leading["label"], "leading faces");
+  EXPECT_EQ(leading["x"], Json({180, 270, 360, 450, 540}));
+  EXPECT_EQ(leading["y"], Json({0.375, 0.125, 0, 0, 0}));
+  EXPECT_TRUE(says(page, "<th scope=\"row\" class=\"words\">leading faces</th><td>2.5</td><td>0.5</td><td>25.0</td>"));
+}
+
+TEST_F(Report, SaysWhereThePowerGoesAndWhatTheMillTakes) {
+  const std::string page = page_of({});
+  EXPECT_TRUE(says(page, "Ball on ball, sliding</th><td>12.00\u00a0±\u00a00.50</td><td>30.0</td>"));
+  EXPECT_TRUE(says(page, "The file gives no length (mill.length), so the slice stands for the mill."));
+  EXPECT_TRUE(says(page, "<td>8.12\u00a0±\u00a00.25</td><td>24.38\u00a0±\u00a00.75</td>"));
+  EXPECT_TRUE(says(page, "The mill was steady while the averages were taken"));
+  EXPECT_FALSE(says(page, "Effects that are on"));
+  EXPECT_FALSE(says(page, "Torque of fluid and pool"));
+}
+
+TEST_F(Report, ShowsEffectsFluidAndLockedBallsWhereThereAreAny) {
+  Story story;
+  story.setup.config.effects["fluid_drag"]["viscosity"] = {0.088};
+  story.setup.config.effects["cohesion"]["force"] = {0};  // as good as absent
+  story.summary.external = {-0.5, -0.25};
+  story.summary.torque_external = {-0.375, 0.125};
+  story.summary.locked = {0, 3};
+  story.summary.locked_balls = 3;
+  const std::string page = page_of(story);
+  EXPECT_TRUE(says(page, "<td class=\"words\">viscosity</td>"));
+  EXPECT_TRUE(says(page, "<td>0.088</td>"));
+  EXPECT_FALSE(says(page, "cohesion:"));
+  EXPECT_TRUE(says(page, "On average \u22120.38\u00a0±\u00a00.12 N\u00a0m about the axis."));
+  EXPECT_TRUE(says(page, "At the end 3 of 30 balls had turned with the shell"));
 }
 
 TEST_F(Report, CarriesTheFilmAndNeedsNothingElse) {
