@@ -47,6 +47,7 @@ int main(int argc, char** argv) try {
   tumble::cli::add_sweep(app);
   tumble::cli::add_calibrate(app);
   tumble::cli::add_effects(app);
+  tumble::cli::add_shell(app);
   app.footer("Example: tumble run examples/lab_mill_55cm.toml -o out\nEach verb has its own help: tumble run --help");
 
   try {

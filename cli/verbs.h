@@ -12,5 +12,6 @@ void add_parameters(CLI::App& app);
 void add_sweep(CLI::App& app);
 void add_calibrate(CLI::App& app);
 void add_effects(CLI::App& app);
+void add_shell(CLI::App& app);
 
 }  // namespace tumble::cli
