@@ -1,0 +1,74 @@
+#!/usr/bin/env bash
+# What the command promises of campaigns: a sweep or a calibration that was killed at any moment goes on to the bytes of
+# an undisturbed one, the number of threads does not show, and held-out data do not move the fit.
+#   tests/cli/sweep.sh TUMBLE_BINARY SOURCE_FOLDER
+set -uo pipefail
+tumble=$(realpath "$1")
+mill=$(realpath "$2")/examples/slice_mill_55cm.toml
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+cd "$work"
+failures=0
+fail() { failures=$((failures + 1)); echo "FAILED: $*"; }
+refused() {  # PATTERN COMMAND...
+  "$tumble" "${@:2}" --quiet >out.txt 2>err.txt
+  [ $? -eq 2 ] && grep -q -- "$1" err.txt || fail "${*:2} : expected a refusal with \"$1\", got $(head -c 300 err.txt)"
+}
+same() { cmp -s "$1" "$2" || fail "$1 and $2 differ"; }
+
+short=(--set run.spin_up=0.1 --set run.revolutions=0.3 --set run.frames_per_second=50 --set charge.count=60)
+sweep=(sweep "$mill" --vary mill.speed=0.6:1.0:0.1 --repeat 3 "${short[@]}" --quiet)
+"$tumble" "${sweep[@]}" --threads 1 -o a.h5 --csv a.csv || fail "the sweep"
+[ "$(wc -l <a.csv)" -eq 16 ] || fail "5 speeds and 3 repeats are 15 rows, not $(wc -l <a.csv) lines with the header"
+[ "$(head -1 a.csv | cut -d, -f1-6)" = mill.speed,seed,torque_N_m,torque_se_N_m,power_W,toe_deg ] || fail "the columns"
+[ "$(sed -n 16p a.csv | cut -d, -f1,2)" = 1,3 ] || fail "the range does not end with its end"
+
+# Killed again and again, then left alone.
+killed=0
+for wait in 0.05 0.1 0.2 0.3 0.4; do
+  "$tumble" "${sweep[@]}" --resume -o b.h5 --csv b.csv &
+  sleep "$wait"
+  kill -9 $! 2>/dev/null && killed=$((killed + 1))
+  wait $! 2>/dev/null
+done
+[ "$killed" -gt 0 ] || fail "no sweep was killed"
+"$tumble" "${sweep[@]}" --resume -o b.h5 --csv b.csv || fail "the resumed sweep"
+for end in h5 csv html; do same a.$end b.$end; done
+[ ! -e b.h5.runs ] || fail "b.h5.runs is left behind"
+"$tumble" "${sweep[@]}" --resume -o b.h5 --csv b.csv || fail "a complete sweep is not done at once"
+refused 'of something else' sweep "$mill" --vary mill.speed=0.6,0.7 "${short[@]}" --resume -o b.h5
+refused exists sweep "$mill" --vary mill.speed=0.6,0.7 "${short[@]}" -o b.h5
+refused 'more than a million' sweep "$mill" --vary mill.speed=0.1:1.1:0.0001 --vary contact.friction=0.1:0.9:0.0005 -o c.h5
+refused 'did you mean mill.speed' sweep "$mill" --vary mill.sped=0.1,0.2 -o c.h5
+refused slurm sweep "$mill" --vary mill.speed=0.1,0.2 --engine slurm -o c.h5
+
+experiments() {  # POWER of the held-out one
+  for speed in 0.6 0.8; do
+    printf '[[experiment]]\nname = "%s"\nset = { "mill.speed" = %s }\npower_W = %s\npower_uncertainty_W = 0.5\n' $speed $speed 12
+  done
+  printf '[[experiment]]\nname = "out"\nhold_out = true\nset = { "mill.speed" = 0.7 }\npower_W = %s\n' "$1"
+}
+experiments 14 >e.toml
+experiments 99 >f.toml
+fit=(calibrate "$mill" --fit contact.friction=0.05:0.5 "${short[@]}" --simulations 12 --repeat 2 --quiet)
+"$tumble" "${fit[@]}" --measured e.toml --threads 1 -o one || fail "the calibration"
+for wait in 0.1 0.3; do
+  "$tumble" "${fit[@]}" --measured e.toml --resume -o two &
+  sleep "$wait"
+  kill -9 $! 2>/dev/null
+  wait $! 2>/dev/null
+done
+"$tumble" "${fit[@]}" --measured e.toml --resume -o two || fail "the resumed calibration"
+for file in model.toml calibration.json report.html runs.csv; do same one/$file two/$file; done
+"$tumble" "${fit[@]}" --measured f.toml -o three || fail "the calibration with other held-out data"
+same one/model.toml three/model.toml
+same one/runs.csv three/runs.csv
+cmp -s one/calibration.json three/calibration.json && fail "held-out data are not reported"
+"$tumble" simulate one/model.toml -o run.h5 --quiet || fail "model.toml does not run"
+refused 'which --fit mill.speed_rpm would change' calibrate "$mill" --fit mill.speed_rpm=20:30 --measured e.toml -o four
+refused 'need at least' calibrate "$mill" --fit contact.friction=0.1:0.5 --measured e.toml --simulations 3 -o four
+refused 'LOW:HIGH' calibrate "$mill" --fit contact.friction=0.5:0.1 --measured e.toml -o four
+[ ! -e four ] || fail "a refused calibration left its folder"
+
+[ "$failures" -eq 0 ] && echo "campaigns are as promised"
+[ "$failures" -eq 0 ]
