@@ -2,6 +2,7 @@
 
 #include "sim/packing.h"
 #include "tests/support/balls.h"
+#include "tests/support/effects.h"
 #include "tests/support/mills.h"
 
 namespace tumble::sim {
@@ -15,13 +16,13 @@ Charge some_charge(const MillModel& model) {
 
 // x -> -x and the other sense of rotation give the mirrored motion. Only rounding differs (the lifters' cosines), and
 // impacts multiply it: 2,000 steps are early enough.
-TEST(Symmetry, MirroredMillGivesMirroredMotion) {
-  MillModel model = make_mill_model(paper_mill());
+void expect_mirrored_motion(const MillModel& model) {
   Charge charge = some_charge(model);
   Charge mirrored = charge;
   for (double& x : mirrored.x) x = -x;
   MillModel backwards = model;
   backwards.speed = -model.speed;
+  backwards.ripple.phase = -model.ripple.phase;
 
   RunningMill a = start_mill(model, charge), b = start_mill(backwards, mirrored);
   for (int k = 0; k < 2000; ++k) {
@@ -35,6 +36,17 @@ TEST(Symmetry, MirroredMillGivesMirroredMotion) {
     EXPECT_NEAR(a.charge.spin[i], -b.charge.spin[i], 1e-5);
   }
   EXPECT_NEAR(a.ledger.torque, -b.ledger.torque, 1e-6 * std::abs(a.ledger.torque));
+}
+
+TEST(Symmetry, MirroredMillGivesMirroredMotion) { expect_mirrored_motion(make_mill_model(paper_mill())); }
+
+// Of all effects only the lifters that are named by number break the mirror.
+TEST(Symmetry, EveryEffectIsMirrored) {
+  Config config = paper_mill();
+  config.effects = every_effect();
+  config.effects.erase("missing_lifters");
+  config.effects["speed_ripple"]["phase_deg"] = {35};
+  expect_mirrored_motion(make_mill_model(config));
 }
 
 // Without gravity no direction is special: turned by two lifters, the same motion turned.
