@@ -70,16 +70,17 @@ void add_run(Shell& shell, const MillShape& shape, int section_number, const std
     const Vec2 a = p[i], b = p[i + 1];
     const Vec2 t = (b - a).normalized();
     const Vec2 n(t.y(), -t.x());
-    LifterFace face{a.x(), a.y(), t.x(), t.y(), n.x(), n.y(), (b - a).norm(), n.x(), n.y(), n.x(), n.y(), {}, {}, {}};
-    face.face = face.at_start = face.at_end = face_of(section, shape.radius, (a + b) / 2, n);
+    FaceEnds ends{n.x(), n.y(), n.x(), n.y(), {}, {}, {}};
+    ends.face = ends.at_start = ends.at_end = face_of(section, shape.radius, (a + b) / 2, n);
     if (i > 0) {
-      LifterFace& before = shell.faces.back();
-      const Vec2 corner = n + Vec2(before.nx, before.ny);
-      before.ex = face.sx = corner.x();
-      before.ey = face.sy = corner.y();
-      before.at_end = face.at_start = face_of(section, shape.radius, a, corner);
+      FaceEnds& before = shell.ends.back();
+      const Vec2 corner = n + Vec2(before.ex, before.ey);  // so far the normal of the face before
+      before.ex = ends.sx = corner.x();
+      before.ey = ends.sy = corner.y();
+      before.at_end = ends.at_start = face_of(section, shape.radius, a, corner);
     }
-    shell.faces.push_back(face);
+    shell.faces.push_back({a.x(), a.y(), t.x(), t.y(), n.x(), n.y(), (b - a).norm()});
+    shell.ends.push_back(ends);
   }
   run.end = static_cast<int>(shell.faces.size());
   // Only where the closing line lies in the shell's steel: a ball under a hook would take it for a face.
@@ -119,44 +120,61 @@ inline Foot foot_on(const LifterFace& f, double x, double y) {
 }
 
 struct Closest {
-  const LifterFace* face = nullptr;
+  int face = 0;
   Foot foot{0, 0, 0, kInfinity};
 };
+
+void look_through(const Shell& shell, const FaceBlock& block, double x, double y, Closest& best) {
+  for (int i = block.begin; i < block.end; ++i) {
+    const Foot foot = foot_on(shell.faces[static_cast<std::size_t>(i)], x, y);
+    if (foot.d2 < best.foot.d2) best = {i, foot};
+  }
+}
+
+// The nearest block first: it rules out most of the others. Equally near faces give the same point.
 Closest closest_of(const Shell& shell, const Run& run, double x, double y) {
+  const auto square = [&](const FaceBlock& b) { return (x - b.x) * (x - b.x) + (y - b.y) * (y - b.y); };
+  int first = run.first_block;
+  double nearest = kInfinity;
+  for (int b = run.first_block; b < run.last_block; ++b) {
+    const double d2 = square(shell.blocks[static_cast<std::size_t>(b)]);
+    if (!(d2 < nearest)) continue;
+    nearest = d2;
+    first = b;
+  }
   Closest best;
-  double within = kInfinity;
+  look_through(shell, shell.blocks[static_cast<std::size_t>(first)], x, y, best);
+  double within = std::sqrt(best.foot.d2);
   for (int b = run.first_block; b < run.last_block; ++b) {
     const FaceBlock& block = shell.blocks[static_cast<std::size_t>(b)];
-    const double bx = x - block.x, by = y - block.y, far = within + block.reach;
-    if (bx * bx + by * by > far * far) continue;
-    for (int i = block.begin; i < block.end; ++i) {
-      const LifterFace& f = shell.faces[static_cast<std::size_t>(i)];
-      const Foot foot = foot_on(f, x, y);
-      if (!(foot.d2 < best.foot.d2)) continue;
-      best = {&f, foot};
-    }
+    const double far = within + block.reach;
+    if (b == first || square(block) > far * far) continue;
+    look_through(shell, block, x, y, best);
     within = std::sqrt(best.foot.d2);
   }
   return best;
 }
 
 // The point as the wall's nearest; `side` is 1 for a centre outside, -1 for one in the steel.
-Nearest point_of(const Closest& c, double x, double y, double side) {
-  const LifterFace& f = *c.face;
-  if (c.foot.along > 0 && c.foot.along < f.length) return {(x - f.x) * f.nx + (y - f.y) * f.ny, -f.nx, -f.ny, f.face};
+Nearest point_of(const Shell& shell, const Closest& c, double x, double y, double side) {
+  const LifterFace& f = shell.faces[static_cast<std::size_t>(c.face)];
+  const FaceEnds& ends = shell.ends[static_cast<std::size_t>(c.face)];
+  if (c.foot.along > 0 && c.foot.along < f.length)
+    return {(x - f.x) * f.nx + (y - f.y) * f.ny, -f.nx, -f.ny, ends.face};
   const bool start = c.foot.along <= 0;
-  const Face face = start ? f.at_start : f.at_end;
+  const Face face = start ? ends.at_start : ends.at_end;
   const double d = std::sqrt(c.foot.d2);
   if (d > 0) return {side * d, side * c.foot.dx / d, side * c.foot.dy / d, face};
-  const double ox = start ? f.sx : f.ex, oy = start ? f.sy : f.ey, o = std::hypot(ox, oy);
+  const double ox = start ? ends.sx : ends.ex, oy = start ? ends.sy : ends.ey, o = std::hypot(ox, oy);
   return {0, -ox / o, -oy / o, face};
 }
 
 // Is the point on the free side of the outline at the point of it that is closest?
-bool in_front(const Closest& c, double x, double y) {
-  const LifterFace& f = *c.face;
-  if (c.foot.along <= 0) return c.foot.dx * f.sx + c.foot.dy * f.sy <= 0;
-  if (c.foot.along >= f.length) return c.foot.dx * f.ex + c.foot.dy * f.ey <= 0;
+bool in_front(const Shell& shell, const Closest& c, double x, double y) {
+  const LifterFace& f = shell.faces[static_cast<std::size_t>(c.face)];
+  const FaceEnds& ends = shell.ends[static_cast<std::size_t>(c.face)];
+  if (c.foot.along <= 0) return c.foot.dx * ends.sx + c.foot.dy * ends.sy <= 0;
+  if (c.foot.along >= f.length) return c.foot.dx * ends.ex + c.foot.dy * ends.ey <= 0;
   return (x - f.x) * f.nx + (y - f.y) * f.ny >= 0;
 }
 
@@ -188,32 +206,34 @@ Nearest from_behind(const Shell& shell, const Run& run, double x, double y) {
     const double d2 = closest_of(shell, other, x, y).foot.d2;
     if (d2 < mine.foot.d2 || (d2 == mine.foot.d2 && &other < &run)) return hidden(shell);
   }
-  return point_of(mine, x, y, -1);
+  return point_of(shell, mine, x, y, -1);
 }
 
 Nearest nearest_on_run(const Shell& shell, const Run& run, double x, double y) {
   if (!run.convex) {
     const Closest c = closest_of(shell, run, x, y);
-    return in_front(c, x, y) ? point_of(c, x, y, 1) : from_behind(shell, run, x, y);
+    return in_front(shell, c, x, y) ? point_of(shell, c, x, y, 1) : from_behind(shell, run, x, y);
   }
   // The face from which the point stands out farthest holds the nearest point of a convex body, or one of its ends.
-  const LifterFace* face = nullptr;
+  int nearest = 0;
   double out = -kInfinity;
   for (int i = run.begin; i < run.end; ++i) {
     const LifterFace& f = shell.faces[static_cast<std::size_t>(i)];
     const double d = (x - f.x) * f.nx + (y - f.y) * f.ny;
     if (d > out) {
       out = d;
-      face = &f;
+      nearest = i;
     }
   }
   if (out <= 0) return from_behind(shell, run, x, y);
-  const double along = (x - face->x) * face->tx + (y - face->y) * face->ty;
-  if (along >= 0 && along <= face->length) return {out, -face->nx, -face->ny, face->face};
-  const double end = along < 0 ? 0 : face->length;
-  const double dx = face->x + end * face->tx - x, dy = face->y + end * face->ty - y;
+  const LifterFace& face = shell.faces[static_cast<std::size_t>(nearest)];
+  const FaceEnds& ends = shell.ends[static_cast<std::size_t>(nearest)];
+  const double along = (x - face.x) * face.tx + (y - face.y) * face.ty;
+  if (along >= 0 && along <= face.length) return {out, -face.nx, -face.ny, ends.face};
+  const double end = along < 0 ? 0 : face.length;
+  const double dx = face.x + end * face.tx - x, dy = face.y + end * face.ty - y;
   const double d = std::sqrt(dx * dx + dy * dy);
-  return {d, dx / d, dy / d, along < 0 ? face->at_start : face->at_end};
+  return {d, dx / d, dy / d, along < 0 ? ends.at_start : ends.at_end};
 }
 
 }  // namespace

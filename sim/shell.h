@@ -29,6 +29,11 @@ struct LifterFace {
   double tx = 0, ty = 0;  // unit vector along it
   double nx = 0, ny = 0;  // unit normal, out of the lifter
   double length = 0;      // [m]
+};
+
+// What is wanted of a face once it is known to be the nearest; kept apart, so that the search reads a cache line a
+// face.
+struct FaceEnds {
   double sx = 0, sy = 0;  // out of the lifter at the corner where it starts (sum of both normals), not normalised
   double ex = 0, ey = 0;  // and where it ends
   Face face = Face::kTop, at_start = Face::kTop, at_end = Face::kTop;
@@ -61,6 +66,7 @@ struct Shell {
   bool plate_covered = false;  // waves from trough to trough leave nothing of the circle
   int lifter_count = 0;        // places for lifters
   std::vector<LifterFace> faces;
+  std::vector<FaceEnds> ends;  // of each face
   std::vector<FaceBlock> blocks;
   std::vector<Run> runs;
   std::vector<Feature> features;               // of all lifters in order; feature f of the shell is features[f - 1]
