@@ -11,6 +11,7 @@
 #include "analysis/still_view.h"
 #include "analysis/view.h"
 #include "core/error.h"
+#include "core/mill_shape.h"
 #include "core/statistics.h"
 #include "core/units.h"
 
@@ -62,7 +63,11 @@ void place_shell(MillView& view, const FilmSurvey& survey, double reach, const C
   view.tip_radius = view.mill.radius;
   if (!(known.mill.diameter > 0)) return;
   view.metres_per_pixel = metres / view.mill.radius;
-  if (known.mill.lifters.height > 0) view.tip_radius -= known.mill.lifters.height / view.metres_per_pixel;
+  const MillShape shape = make_mill_shape(known);  // worn as the file has it
+  if (shape.tip_radius < shape.radius)
+    view.tip_radius *= shape.tip_radius / shape.radius;
+  else if (known.mill.lifters.height > 0)
+    view.tip_radius -= known.mill.lifters.height / view.metres_per_pixel;
   const auto sizes = known_radii(known);
   if (sizes.size() == view.radii.size())
     for (std::size_t c = 0; c < sizes.size(); ++c) view.radii[c] = sizes[c] / view.metres_per_pixel;
@@ -133,7 +138,7 @@ ChargeMotion measure_stills(const std::string& folder, const FilmOptions& option
 
   const auto shares = charge_shares(stills, balls, view.mill);
   motion.lifter_count = known.mill.lifters.count;
-  const bool tips_known = known.mill.lifters.height > 0 && known.mill.diameter > 0;
+  const bool tips_known = known.mill.diameter > 0 && view.tip_radius < view.mill.radius;
   if (!tips_known || motion.lifter_count < 1) {
     const StillLifters seen = find_still_lifters(stills, shares, view.mill, motion.lifter_count);
     motion.lifter_count = seen.count;

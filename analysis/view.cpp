@@ -5,6 +5,7 @@
 
 #include "analysis/film_reader.h"
 #include "analysis/mill_scale.h"
+#include "core/mill_shape.h"
 
 namespace tumble::analysis {
 namespace {
@@ -103,7 +104,10 @@ MillView find_view(const std::vector<std::vector<Detection>>& balls, const BallL
 
   view.tip_radius = view.mill.radius;
   if (known.mill.lifters.profile == LifterProfile::kNone && known.origin.contains("mill.lifters.profile")) return view;
-  if (known.mill.lifters.height > 0 && mill_radius > 0) {
+  const MillShape shape = make_mill_shape(known);  // worn as the file has it
+  if (shape.tip_radius < shape.radius) {
+    view.tip_radius = view.mill.radius * shape.tip_radius / shape.radius;
+  } else if (known.mill.lifters.height > 0 && mill_radius > 0) {
     view.tip_radius = view.mill.radius * (1 - known.mill.lifters.height / mill_radius);
   } else if (drum.lifter_count > 0) {
     double strongest =
