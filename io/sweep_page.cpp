@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 
+#include "core/angle.h"
 #include "core/effects.h"
 #include "core/version.h"
 #include "io/config_keys.h"
@@ -19,6 +20,8 @@ namespace {
 constexpr std::size_t kMostLines = 12;  // in one plot: more cannot be told apart
 constexpr std::size_t kMostRows = 200;  // of the table of points; the CSV has them all
 constexpr int kMeasuredColour = 0;
+
+const std::string kMeasured = "measured, ";  // before what else an experiment sets
 
 struct Figure {
   const char* quantity;
@@ -77,7 +80,7 @@ std::vector<PlotSeries> measured_series(const Experiments& measured, const Confi
       if (!same) rest += fmt::format("{}{} = {}", rest.empty() ? "" : ", ", k, value);
     }
     PlotSeries& s = by_rest[rest];
-    s.label = rest.empty() ? "measured" : "measured, " + rest;
+    s.label = rest.empty() ? "measured" : kMeasured + rest;
     s.x.push_back(number_at(config_of(mill, e), key));
     s.y.push_back(m.value);
     s.se.push_back(m.se);
@@ -91,13 +94,24 @@ std::vector<PlotSeries> measured_series(const Experiments& measured, const Confi
   return list;
 }
 
+// Directions to either side of 0 degrees are to lie side by side: -3, not 357.
+void unwind(Plot& plot) {
+  double c = 0, s = 0;
+  for (const PlotSeries& series : plot.series)
+    for (const double y : series.y)
+      if (!std::isnan(y)) c += std::cos(radians(y)), s += std::sin(radians(y));
+  const double middle = degrees(std::atan2(s, c));
+  const double origin = middle < -90 ? middle + 360 : middle;
+  for (PlotSeries& series : plot.series)
+    for (double& y : series.y) y = origin + wrap_180(y - origin);
+}
+
 Plot plot_of(const Figure& figure, const Sweep& sweep, const Config& mill, const Experiments& measured,
              std::size_t axis) {
   const RunQuantity& quantity = run_quantity(figure.quantity);
   Plot plot;
   plot.title = figure.title;
   plot.x_label = sweep.varied[axis].key;
-  plot.y_label = fmt::format("{}, {}", quantity.name.substr(0, quantity.name.find('_')), quantity.unit);
   plot.y_label = quantity.unit;
   plot.y_from_zero = figure.from_zero;
   std::vector<std::string> labels;
@@ -117,8 +131,15 @@ Plot plot_of(const Figure& figure, const Sweep& sweep, const Config& mill, const
     s.y.push_back(e.value);
     s.se.push_back(e.se);
   }
+  for (std::size_t i = 0; i < plot.series.size(); ++i) plot.series[i].colour = static_cast<int>(i) + 1;
   if (const ScalarDatum* d = datum(figure.measured))
-    for (PlotSeries& s : measured_series(measured, mill, plot.x_label, *d)) plot.series.push_back(std::move(s));
+    for (PlotSeries& s : measured_series(measured, mill, plot.x_label, *d)) {
+      const auto at =
+          std::find(labels.begin(), labels.end(), s.label.substr(std::min(s.label.size(), kMeasured.size())));
+      if (labels.size() > 1 && at != labels.end()) s.colour = static_cast<int>(at - labels.begin()) + 1;
+      plot.series.push_back(std::move(s));
+    }
+  if (quantity.is_direction) unwind(plot);
   return plot;
 }
 
