@@ -17,17 +17,17 @@ using Column = std::vector<double>;
 
 double sum(const Column& v) { return std::accumulate(v.begin(), v.end(), 0.0); }
 
-std::string percent(double share) { return std::isfinite(share) ? fmt::format("{:.1f}", 100 * share) : "–"; }
+std::string percent(double share) { return number(100 * share, 5); }  // to a tenth
 
 struct Words {
   const char* key;
   const char* words;
 };
 constexpr Words kCauses[] = {
-    {"ball_ball_normal", "Ball on ball, along the normal (dashpot)"},
+    {"ball_ball_normal", "Ball on ball, along the normal"},
     {"ball_ball_sliding", "Ball on ball, sliding"},
-    {"ball_wall_normal", "Ball on shell and lifters, along the normal (dashpot)"},
-    {"ball_wall_sliding", "Ball on shell and lifters, sliding"},
+    {"ball_wall_normal", "Ball on wall, along the normal"},
+    {"ball_wall_sliding", "Ball on wall, sliding"},
     {"rolling", "Rolling resistance"},
     {"fluid_drag", "Drag of the fluid"},
     {"slurry_pool", "Drag in the pool"},
@@ -53,11 +53,11 @@ PageTable dissipation_table(const RunReport& r) {
   for (std::size_t c = 0; c < causes; ++c)
     table.rows.push_back({cause_in_words(r.setup->dissipation_causes[c]), with_error(s.dissipation[c]),
                           percent(s.dissipation[c].value / drive)});
-  table.rows.push_back({"Stored meanwhile (motion, height, springs)", number(s.stored_power, s.power.se),
-                        percent(s.stored_power / drive)});
+  table.rows.push_back({"Stored meanwhile", number(s.stored_power, s.power.se), percent(s.stored_power / drive)});
   table.note =
-      "Of one slice, mean over the written frames. Losses along the normal are those of impacts and of contacts that "
-      "stay closed alike.";
+      "Of one slice, mean over the written frames. The wall is shell and lifters. Along the normal the dashpots lose, "
+      "in "
+      "impacts and in contacts that stay closed alike. Stored: motion, height, springs.";
   return table;
 }
 
@@ -292,7 +292,7 @@ PageSection trust_section(const RunReport& r) {
 
 // --- from one slice to the mill
 
-std::string slices_in_words(const Config& c, double slices) {
+std::string slices_in_words(const Config& c, double slices, double mass) {
   const std::vector<int> counts = class_counts(c);
   switch (slice_rule(c)) {
     case SliceRule::kGiven:
@@ -310,14 +310,14 @@ std::string slices_in_words(const Config& c, double slices) {
       "{:.4g} m² × length {:g} m × bulk density {:g} kg/m³ = {:.4g} kg, over {:.4g} kg in the slice. Motion along the "
       "axis and the end walls are not in it.",
       slices, filling_of(c, counts), kPi * c.mill.diameter * c.mill.diameter / 4, c.mill.length, c.charge.bulk_density,
-      slices * slice_mass(c, counts), slice_mass(c, counts));
+      slices * mass, mass);
 }
 
 PageSection mill_section(const RunReport& r) {
   const RunSummary& s = *r.summary;
   PageSection section{.heading = "From one slice to the mill"};
-  section.paragraphs = {slices_in_words(r.setup->config, s.slices)};
   const double mass = sum(r.setup->balls.mass);
+  section.paragraphs = {slices_in_words(r.setup->config, s.slices, mass)};
   PageTable table{.header = {"Quantity", "Unit", "One slice", "The mill"}};
   table.rows = {{"Slices", "", "1", fmt::format("{:.4g}", s.slices)},
                 {"Balls’ mass", "kg", fmt::format("{:.4g}", mass), fmt::format("{:.4g}", mass * s.slices)},
