@@ -36,6 +36,7 @@ refused 2 'verb\|subcommand' "" "$tumble"
 refused 2 'simulat: unknown verb; known:.*simulate' "" "$tumble" simulat mill.toml -o run.h5
 refused 2 'output' "" "$tumble" simulate mill.toml
 refused 2 'ship' "" "$tumble" simulate mill.toml -o run.h5 --ship
+refused 2 'cohesin: is no effect; the nearest is cohesion' "" "$tumble" effects cohesin
 
 # --- MILL.toml
 simulate 2 'missing.toml' missing.toml
