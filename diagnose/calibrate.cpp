@@ -56,6 +56,28 @@ FitProblem problem_of(const CalibrationRequest& request, const std::vector<Fitte
   return problem;
 }
 
+// The runs at the best values are new: where they lie farther from the emulators than both errors allow, the fit was
+// led astray by too few runs.
+void check_emulators(Calibration& c, const std::vector<Estimate>& emulated) {
+  double sum = 0, count = 0;
+  std::size_t t = 0;
+  for (const Prediction& p : c.predictions) {
+    if (p.hold_out) continue;
+    const Estimate& guess = emulated[t++];  // both in the order of experiments and data
+    const double d = p.simulated.value - guess.value, se = std::hypot(p.simulated.se, guess.se);
+    if (std::isnan(d) || !(se > 0)) continue;
+    const double z = (p.is_direction ? wrap_180(d) : d) / se;
+    sum += z * z;
+    ++count;
+  }
+  constexpr double kTooFar = 2;
+  if (count > 0 && std::sqrt(sum / count) > kTooFar)
+    c.notes.push_back(
+        fmt::format("the runs at the fitted values lie {:.1f} standard errors (rms) from what the fit "
+                    "expected of them: it wants more simulations (--simulations)",
+                    std::sqrt(sum / count)));
+}
+
 double difference(const Prediction& p) {
   const double d = p.simulated.value - p.measured.value;
   return p.is_direction ? wrap_180(d) : d;
@@ -159,6 +181,7 @@ Calibration calibrate(const CalibrationRequest& request, const MillOf& mill_of, 
   std::vector<double> values;
   for (FittedKey& key : c.keys) values.push_back(key.value.value = rounded(key.value));
   predict(c, request, values, mill_of, run_all);
+  check_emulators(c, found.emulated);
   return c;
 }
 

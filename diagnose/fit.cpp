@@ -215,6 +215,7 @@ class Fitter {
     fit.chi2 = chi2(best_);
     double data = 0;
     for (std::size_t t = 0; t < emulators_.size(); ++t) {
+      fit.emulated.push_back(emulators_[t] ? emulators_[t]->mean(best_) : Estimate{});
       if (emulators_[t])
         ++data;
       else

@@ -42,6 +42,7 @@ struct Fit {
   double chi2 = kNotGiven;
   double degrees_of_freedom = 0;
   bool misfit = false;
+  std::vector<Estimate> emulated;  // of each target at the best values; NaN where it had no part
   std::vector<std::string> notes;
 };
 
