@@ -48,7 +48,7 @@ PageTable dissipation_table(const RunReport& r) {
   const RunSummary& s = *r.summary;
   double drive = s.stored_power;
   for (const Estimate& d : s.dissipation) drive += d.value;
-  PageTable table{.header = {"Lost to", "W", "% of the drive’s power"}};
+  PageTable table{.header = {"Lost to", "W", "% of power"}};
   const std::size_t causes = std::min(s.dissipation.size(), r.setup->dissipation_causes.size());
   for (std::size_t c = 0; c < causes; ++c)
     table.rows.push_back({cause_in_words(r.setup->dissipation_causes[c]), with_error(s.dissipation[c]),
@@ -181,7 +181,7 @@ PlotSeries round_the_shell(const Column& edges, const Column& values, int cut, c
 }
 
 PageTable faces_table(const ImpactPlaces& p) {
-  PageTable table{.title = "Impacts of balls on the shell", .header = {"Part", "per second", "W", "% of this power"}};
+  PageTable table{.title = "Impacts of balls on the shell", .header = {"Part", "per second", "W", "% of these W"}};
   double power = 0;
   for (const Column& face : p.power) power += sum(face);
   for (std::size_t f = 0; f < kFaceNames.size(); ++f)
