@@ -154,6 +154,7 @@ void wall_forces_by(RunningMill& mill) {
   const MillModel& m = mill.model;
   const Shell& shell = m.shell;
   const double dt = m.time_step, speed = mill_speed(m, mill.step);
+  const double speed_before = mill_speed_before(m, mill.step), faster = speed - speed_before;
   Charge& c = mill.charge;
   ContactList& list = mill.wall_contacts;
   const ShellPose pose = pose_of(mill_angle(m, mill.step));
@@ -172,15 +173,15 @@ void wall_forces_by(RunningMill& mill) {
 
     ContactState& state = list.states[k];
     const double px = x + distance * nx, py = y + distance * ny;  // on the wall
-    const double dvx = -speed * py - c.vx[i], dvy = speed * px - c.vy[i];
+    const double dvx = -speed_before * py - c.vx[i], dvy = speed_before * px - c.vy[i];
     Touch now;
     now.overlap = contact.reach - distance;
     now.approach = -(dvx * nx + dvy * ny) * dt;
-    now.closing = -((dvx - c.ax[i]) * nx + (dvy - c.ay[i]) * ny);
+    now.closing = -((dvx - faster * py - c.ax[i]) * nx + (dvy + faster * px - c.ay[i]) * ny);
     now.damping = contact.damping;
     now.slide = (dvy * nx - dvx * ny - distance * c.spin[i]) * dt;
     Pairing pair;
-    if constexpr (!kPlain) pair = {c.mass[i], c.radius[i], (speed - c.spin[i]) * dt};
+    if constexpr (!kPlain) pair = {c.mass[i], c.radius[i], (speed_before - c.spin[i]) * dt};
 
     if (!touches) {
       if constexpr (kPlain) {

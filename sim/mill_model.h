@@ -41,6 +41,11 @@ inline double mill_angle(const MillModel& model, std::int64_t step) {
 inline double mill_speed(const MillModel& model, std::int64_t step) {
   return model.speed * model.ripple.share(model.speed * (static_cast<double>(step) * model.time_step));
 }
+// In the middle of the step that led there, where the balls' velocities are: what slides or rolls on a wall whose speed
+// varies would err in the first order of the time step by that at its end.
+inline double mill_speed_before(const MillModel& model, std::int64_t step) {
+  return model.speed * model.ripple.share(model.speed * ((static_cast<double>(step) - 0.5) * model.time_step));
+}
 
 // Largest time step that is let through for these contacts and this lightest pair [s].
 double largest_time_step(const LinearSpringDashpot& law, double effective_mass);

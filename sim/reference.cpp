@@ -69,11 +69,12 @@ void wall(ReferenceMill& mill, std::size_t i, int feature, double angle, double&
   const MillModel& m = mill.model;
   const auto [distance, nx, ny, face] = nearest_on_wall(m.shell, pose_of(angle), feature, c.x[i], c.y[i]);
   const double px = c.x[i] + distance * nx, py = c.y[i] + distance * ny;
-  const double speed = mill_speed(m, mill.step);
+  const double speed = mill_speed_before(m, mill.step);
+  const double faster = mill_speed(m, mill.step) - speed;
   const double vx = -speed * py - c.vx[i], vy = speed * px - c.vy[i];
   const double sliding = vy * nx - vx * ny - distance * c.spin[i];
 
-  const Touch now{c.radius[i] - distance, -((vx - c.ax[i]) * nx + (vy - c.ay[i]) * ny),
+  const Touch now{c.radius[i] - distance, -((vx - faster * py - c.ax[i]) * nx + (vy + faster * px - c.ay[i]) * ny),
                   -(vx * nx + vy * ny) * m.time_step, sliding * m.time_step,
                   Damping(m.wall.springs, m.time_step).of(c.mass[i])};
   const Pairing rolling{c.mass[i], c.radius[i], (speed - c.spin[i]) * m.time_step};
@@ -101,7 +102,7 @@ struct Fluid {
 void body(ReferenceMill& mill, std::size_t i, const ShellPose& pose, Fluid& drag, Fluid& pool) {
   const MillModel& m = mill.model;
   Charge& c = mill.charge;
-  const double dt = m.time_step, r = c.radius[i], speed = mill_speed(m, mill.step);
+  const double dt = m.time_step, r = c.radius[i], speed = mill_speed_before(m, mill.step);
   if (const EndWallFriction& ends = m.body.ends; ends.on()) {
     const double mid_x = c.x[i] - 0.5 * dt * c.vx[i], mid_y = c.y[i] - 0.5 * dt * c.vy[i];
     const double ux = (c.vx[i] + speed * mid_y) * dt, uy = (c.vy[i] - speed * mid_x) * dt;
@@ -118,7 +119,7 @@ void body(ReferenceMill& mill, std::size_t i, const ShellPose& pose, Fluid& drag
     push(c, i, fx, fy, 0);
     const double torque = c.x[i] * fy - c.y[i] * fx;
     mill.ledger.torque += torque;
-    mill.ledger.drive_work += torque * speed * dt;
+    mill.ledger.drive_work += torque * mill_speed(m, mill.step) * dt;
   }
   const double vx = c.vx[i] + c.ax[i], vy = c.vy[i] + c.ay[i], w = c.spin[i] + c.alpha[i];
   const double v = std::sqrt(vx * vx + vy * vy), depth = m.body.pool.depth(c.y[i], r);

@@ -53,14 +53,14 @@ struct BodyPush {
 };
 
 // Friction of the ends: a spring vector in the mill's frame, wound back to the limit.
-void end_walls(RunningMill& mill, std::size_t i, const ShellPose& pose, double speed) {
+void end_walls(RunningMill& mill, std::size_t i, const ShellPose& pose, double speed, double speed_before) {
   const EndWallFriction& ends = mill.model.body.ends;
   const double dt = mill.model.time_step;
   Charge& c = mill.charge;
   // Against the ends during the step, with the position in its middle: that at its end would let a ball that is held
   // drift outwards by W^2 r dt / 2.
   const double mid_x = c.x[i] - 0.5 * dt * c.vx[i], mid_y = c.y[i] - 0.5 * dt * c.vy[i];
-  const double ux = (c.vx[i] + speed * mid_y) * dt, uy = (c.vy[i] - speed * mid_x) * dt;
+  const double ux = (c.vx[i] + speed_before * mid_y) * dt, uy = (c.vy[i] - speed_before * mid_x) * dt;
   const double wound_x = c.end_x[i] + ux * pose.cos + uy * pose.sin,
                wound_y = c.end_y[i] + uy * pose.cos - ux * pose.sin;
   const double limit = ends.coefficient * c.mass[i] * mill.model.gravity + ends.pressure * c.pressure[i];
@@ -126,11 +126,12 @@ void kick(RunningMill& mill) {
   const double half_fall = 0.5 * mill.model.gravity * dt;
   const ShellPose pose = kBody ? pose_of(mill_angle(mill.model, mill.step)) : ShellPose{};
   const double speed = kBody ? mill_speed(mill.model, mill.step) : 0;
+  const double speed_before = kBody ? mill_speed_before(mill.model, mill.step) : 0;
   double fastest2 = 0, mass_moment = 0;
   for (std::size_t i = 0; i < c.size(); ++i) {
     BodyPush push;
     if constexpr (kBody) {
-      if (mill.model.body.ends.on()) end_walls(mill, i, pose, speed);
+      if (mill.model.body.ends.on()) end_walls(mill, i, pose, speed, speed_before);
       push = fluids(mill, i);
       c.pressure[i] = 0;
     }

@@ -49,7 +49,7 @@ TEST(LockedBalls, AreThoseThatTurnWithTheShell) {
   simulate(config, sink);
   EXPECT_EQ(locked, 20);
 
-  config.mill.lifters.profile = LifterProfile::kNone;  // slow and smooth: all roll back
+  config.mill.lifters = {};  // slow and smooth: all roll back
   config.mill.speed = 0.3;
   simulate(config, sink);
   EXPECT_EQ(locked, 0);
