@@ -40,7 +40,7 @@ TEST(EndWallFriction, HoldsAtRestUpToTheWeight) {
 TEST(EndWallFriction, CarriesABallRoundWithTheMill) {
   Effects effects = ends(5);
   effects["speed_ripple"] = {{"amplitude", {0.3}}, {"order", {2}}, {"phase_deg", {40}}};
-  MillModel model = resting(smooth_mill(kFlat, effects), 1e-5);
+  MillModel model = resting(smooth_mill(kFlat, effects), 4e-5);
   const double w = model.speed = 6, p = 40 * kPi / 180;
   Charge charge = charge_of({{.x = 0.2, .vy = 0.2 * w * (1 + 0.3 * std::cos(p))}});
   charge.spin[0] = 1;

@@ -35,6 +35,14 @@ TEST(SlurryPool, LiftsByWhatIsDisplaced) {
   EXPECT_NEAR(acceleration_at(-40 * kRadius), -kGravity + whole, 1e-6);
 }
 
+// `level` counts in shell radii from the axis.
+TEST(SlurryPool, HasItsSurfaceAtTheLevel) {
+  const MillModel model = resting(smooth_mill(0.25, {{"slurry_pool", {{"density", {1500}}, {"level", {-0.4}}}}}), 1e-6);
+  RunningMill mill = start_mill(model, charge_of({{.y = -0.1}}));
+  advance(mill);
+  EXPECT_NEAR(2 * mill.charge.ay[0] / 1e-6, -kGravity + 0.5 * 1500 * kVolume * kGravity / 0.06, 1e-6);
+}
+
 // A ball half as dense as the slurry bobs half immersed; without drag no energy is lost, small bobs are harmonic with
 // w^2 = rho g (pi r^2) / m, and it shoots out of the depth as far as it was pushed down.
 TEST(SlurryPool, BobsWithoutLoss) {
