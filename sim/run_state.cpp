@@ -10,12 +10,12 @@
 namespace tumble::sim {
 namespace {
 
-// Contacts that can touch at once: discs in the plane make at most 3 n pairs (a planar graph); a ball touches at most
-// two lifters and the shell. Some more for balls that overlap.
+// Contacts that can touch at once: discs in the plane make at most 3 n pairs (a planar graph); a ball touches the plate
+// and a few runs of lifters. Some more for balls that overlap, and for a few balls in a hook of many runs.
 constexpr std::size_t kPairsPerBall = 4, kFeaturesPerBall = 4;
 constexpr std::size_t kWordsPerContact = 12;
 constexpr std::size_t kArraysOfBalls = 14;  // charge, flights and locked balls, see `visit`
-constexpr std::size_t kOtherWords = 64 + 6 * kBins + 2 * kPlaces + kFallBins;
+constexpr std::size_t kOtherWords = 64 + 64 * kWordsPerContact + 6 * kBins + 2 * kPlaces + kFallBins;
 
 struct Writer {
   std::vector<double> words;
