@@ -47,6 +47,7 @@ inline void draw_lifters(Random& random, Config& c) {
   const double width = std::min(height * log_uniform(random, 0.2, 4), 0.9 * pitch * random.uniform());
   if (!polygon) l.height = height;
   if (!polygon && !wave) l.width = width;
+  // 57 and not 57.3 degrees in a radian: faces that just do not meet.
   const double steepest = 57 * std::atan(width / height);
   if (l.profile == LifterProfile::kTriangle && chance(random, 0.3)) l.leading_angle_deg = random.uniform(0, steepest);
   if (l.profile == LifterProfile::kTriangle && std::isnan(l.leading_angle_deg) && chance(random, 0.4))
