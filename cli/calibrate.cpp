@@ -19,10 +19,13 @@
 #include "io/output.h"
 #include "io/run_journal.h"
 #include "io/sweep_page.h"
+#include "io/text_file.h"
 
 namespace tumble::cli {
 namespace fs = std::filesystem;
 namespace {
+
+constexpr std::size_t kLargestJsonMiB = 64;
 
 struct Options : CommonOptions {
   fs::path config, measured, output;
@@ -34,21 +37,15 @@ struct Options : CommonOptions {
   bool resume = false;
 };
 
-// Two keys that say the same thing: a file gives one.
-std::string twin_of(const std::string& key) {
-  if (key == "mill.speed") return "mill.speed_rpm";
-  if (key == "mill.speed_rpm") return "mill.speed";
-  if (key == "charge.count") return "charge.filling";
-  if (key == "charge.filling") return "charge.count";
-  return "";
-}
-
 std::vector<FitKey> keys_of(const Options& o) {
   std::vector<FitKey> keys;
   for (const std::string& text : o.fit) {
     const FitRange range = parse_fit(text);
-    for (const FitKey& before : keys)
+    for (const FitKey& before : keys) {
       if (before.key == range.key) throw InputError("--fit: " + range.key, "is given twice; give each key once");
+      if (before.key == io::twin_of(range.key))
+        throw InputError("--fit: " + range.key, "says the same as " + before.key + "; fit one of the two");
+    }
     if (range.key == "run.seed") throw InputError("--fit: run.seed", "is no property of the mill; fit another key");
     keys.push_back({range.key, range.low, range.high});
   }
@@ -79,23 +76,29 @@ std::vector<std::string> assignments(const std::vector<FitKey>& keys, const std:
   return sets;
 }
 
-// Every experiment's mill at both ends of the ranges: a mistake is to show before the first run.
+// Every experiment's mill at both ends of the ranges, and between: a mistake is to show before the first run, and so is
+// a key that takes whole numbers only, which no fit can move.
 void check_mills(const std::vector<Experiment>& experiments, const Config& mill, const std::vector<FitKey>& keys) {
-  std::vector<double> low, high;
-  for (const FitKey& key : keys) low.push_back(key.low), high.push_back(key.high);
-  for (const std::vector<double>& ends : {low, high}) {
+  std::vector<double> low, high, between;
+  for (const FitKey& key : keys) {
+    low.push_back(key.low);
+    high.push_back(key.high);
+    between.push_back(key.low + (key.high - key.low) / std::sqrt(7.0));  // whole for no range that is given in decimals
+  }
+  for (const std::vector<double>& ends : {low, high, between}) {
     try {
       io::with_sets(mill, assignments(keys, ends));
     } catch (const InputError& e) {
       const std::string said = e.what(), mark = "--set: ";
-      throw InputError("--fit", said.starts_with(mark) ? said.substr(mark.size()) : said);
+      throw InputError(ends == between ? "--fit, between the ends of its range" : "--fit",
+                       said.starts_with(mark) ? said.substr(mark.size()) : said);
     }
     for (const Experiment& e : experiments) check_complete(io::config_of(mill, e, assignments(keys, ends)));
   }
   for (const Experiment& e : experiments)
     for (const auto& [key, value] : e.sets)
       for (const FitKey& fitted : keys)
-        if (key == fitted.key || key == twin_of(fitted.key))
+        if (key == fitted.key || key == io::twin_of(fitted.key))
           throw InputError(e.place, "sets " + key + ", which --fit " + fitted.key + " would change; leave one of them");
 }
 
@@ -160,9 +163,11 @@ void calibrate(Options o) {
   const std::string definition = definition_of(mill, request);
   std::error_code error;
   if (o.resume && !o.force && fs::exists(json, error)) {
-    if (io::read_definition(json) != definition)
+    const std::string said = io::read_text(json, "a calibration.json", kLargestJsonMiB);
+    if (io::definition_in(said) != definition)
       throw InputError(json.string(), "is a complete calibration of something else; give another output, or --force");
-    return say(o, o.output.string() + " is complete");
+    say(o, o.output.string() + " is complete");
+    return o.json ? print(said) : void();
   }
   check_outputs(o, journal_path, {model, json, page, table});
 

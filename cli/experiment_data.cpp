@@ -24,9 +24,7 @@ Estimate mean_torque(const fs::path& path) {
   return mean_of_series(table.numbers("torque_N_m"));
 }
 
-}  // namespace
-
-void fill_from_files(Experiment& e, const Config& mill, const CommonOptions& options, std::vector<std::string>& notes) {
+void fill(Experiment& e, const Config& mill, const CommonOptions& options, std::vector<std::string>& notes) {
   if (!e.torque_series.empty()) {
     if (!std::isnan(e.power.value) || !std::isnan(e.torque.value))
       notes.push_back(e.name + ": torque_series is not used, for power_W or torque_N_m is given");
@@ -51,6 +49,17 @@ void fill_from_files(Experiment& e, const Config& mill, const CommonOptions& opt
     throw InputError(e.place,
                      "brings no number to calibrate by; give power_W, torque_N_m, toe_deg, shoulder_deg, "
                      "torque_series, motion or film");
+}
+
+}  // namespace
+
+void fill_from_files(Experiment& e, const Config& mill, const CommonOptions& options, std::vector<std::string>& notes) {
+  try {
+    fill(e, mill, options, notes);
+  } catch (const InputError& error) {  // the file alone would not tell whose it is
+    const std::string said = error.what();
+    throw InputError(said.starts_with(e.place) ? "" : e.place, said);
+  }
 }
 
 }  // namespace tumble::cli

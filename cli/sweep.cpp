@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <memory>
@@ -59,9 +60,12 @@ Plan make_plan(const Options& o) {
   double runs = o.repeats;
   for (const std::string& text : o.vary) {
     VariedKey varied = parse_vary(text, notes);
-    for (const VariedKey& before : plan.sweep.varied)
+    for (const VariedKey& before : plan.sweep.varied) {
       if (before.key == varied.key)
         throw InputError("--vary: " + varied.key, "is given twice; give all its values in one");
+      if (before.key == io::twin_of(varied.key))
+        throw InputError("--vary: " + varied.key, "says the same as " + before.key + "; vary one of the two");
+    }
     if (varied.key == "run.seed") throw InputError("--vary: run.seed", "is what --repeat changes; give --repeat K");
     runs *= double(varied.values.size());
     plan.sweep.varied.push_back(std::move(varied));
@@ -125,7 +129,10 @@ void dry_run(const Plan& plan, const Options& o) {
                              automatic ? "; where spin_up is \"auto\", 30 revolutions of it are assumed" : ""));
 }
 
-std::string summary(const Sweep& sweep, std::size_t failed) {
+constexpr std::array kSummaryNames{"torque_N_m", "mill_power_W", "toe_deg", "shoulder_deg"};
+using PointEstimates = std::array<std::vector<Estimate>, kSummaryNames.size()>;
+
+std::string summary(const Sweep& sweep, const PointEstimates& estimates, std::size_t failed) {
   nlohmann::ordered_json points = nlohmann::ordered_json::array();
   for (std::size_t p = 0; p < sweep.points(); ++p) {
     nlohmann::ordered_json point;
@@ -135,14 +142,24 @@ std::string summary(const Sweep& sweep, std::size_t failed) {
       const double number = io::number_of(value);
       point[sweep.varied[k].key] = std::isnan(number) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(number);
     }
-    for (const char* name : {"torque_N_m", "mill_power_W", "toe_deg", "shoulder_deg"}) {
-      const Estimate e = io::over_repeats(sweep, p, io::run_quantity(name));
-      point[name] = io::json_number(e.value, 9);
-      point[std::string(name) + "_se"] = io::json_number(e.se, 4);
+    for (std::size_t q = 0; q < kSummaryNames.size(); ++q) {
+      const Estimate e = estimates[q].at(p);
+      point[kSummaryNames[q]] = io::json_number(e.value, 9);
+      point[std::string(kSummaryNames[q]) + "_se"] = io::json_number(e.se, 4);
     }
     points.push_back(std::move(point));
   }
-  return nlohmann::ordered_json{{"runs", sweep.runs.size()}, {"failed", failed}, {"points", points}}.dump(2) + "\n";
+  return nlohmann::ordered_json{{"runs", sweep.points() * sweep.repeats}, {"failed", failed}, {"points", points}}.dump(
+             2) +
+         "\n";
+}
+
+// From the complete file, whether it was written just now or long ago: the same words.
+std::string summary_of_file(const fs::path& path, const Sweep& sweep) {
+  PointEstimates estimates;
+  for (std::size_t q = 0; q < kSummaryNames.size(); ++q)
+    estimates[q] = io::read_sweep_points(path, io::run_quantity(kSummaryNames[q]));
+  return summary(sweep, estimates, io::read_sweep_failures(path));
 }
 
 // True where the output is there and is this very sweep.
@@ -173,7 +190,11 @@ void sweep(Options o) {
   for (const fs::path& output : {o.output, o.csv, o.page})
     for (const fs::path& input : {o.config, o.measured})
       if (!output.empty() && !input.empty()) io::check_not_input(output, input);
-  if (is_done(o, plan.sweep)) return say(o, o.output.string() + " is complete");
+  io::check_apart({o.output, o.csv, o.page});
+  if (is_done(o, plan.sweep)) {
+    say(o, o.output.string() + " is complete");
+    return o.json ? print(summary_of_file(o.output, plan.sweep)) : void();
+  }
 
   fs::path journal_path = o.output;
   journal_path += ".runs";
@@ -208,7 +229,7 @@ void sweep(Options o) {
   io::write_plot_page(o.page, io::sweep_page(plan.sweep, plan.mill, measured));
   io::write_sweep(o.output, plan.sweep);  // last: where it stands, the sweep is complete
   journal.remove();
-  if (o.json) print(summary(plan.sweep, failed));
+  if (o.json) print(summary_of_file(o.output, plan.sweep));
 }
 
 }  // namespace

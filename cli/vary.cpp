@@ -89,8 +89,10 @@ VariedKey parse_vary(const std::string& text, std::vector<std::string>& notes) {
     varied.values = split(list, ',');
   for (std::size_t i = 0; i < varied.values.size(); ++i) {
     if (varied.values[i].empty()) throw InputError(place, "has an empty value in \"" + list + "\"");
+    const double number = io::number_of(varied.values[i]);
     for (std::size_t j = 0; j < i; ++j)
-      if (varied.values[i] == varied.values[j]) throw InputError(place, "has the value " + varied.values[i] + " twice");
+      if (varied.values[i] == varied.values[j] || number == io::number_of(varied.values[j]))
+        throw InputError(place, "has the value " + varied.values[i] + " twice");
   }
   return varied;
 }

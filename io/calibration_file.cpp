@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "core/version.h"
@@ -239,9 +238,8 @@ PlotPage calibration_page(const Calibration& c) {
   return page;
 }
 
-std::string read_definition(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  const Json j = Json::parse(file, nullptr, false);
+std::string definition_in(const std::string& calibration_json) {
+  const Json j = Json::parse(calibration_json, nullptr, false);
   return j.is_object() && j.contains("definition") && j["definition"].is_string() ? j["definition"].get<std::string>()
                                                                                   : "";
 }

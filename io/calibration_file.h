@@ -1,5 +1,4 @@
 #pragma once
-#include <filesystem>
 #include <string>
 
 #include "core/calibration.h"
@@ -16,7 +15,7 @@ std::string runs_csv(const Calibration& calibration);
 // The report: parameters with errors and correlations, measured against predicted.
 PlotPage calibration_page(const Calibration& calibration);
 
-// `definition` of a calibration.json; empty where there is none to be read.
-std::string read_definition(const std::filesystem::path& calibration_json);
+// `definition` in the text of a calibration.json; empty where there is none to be read.
+std::string definition_in(const std::string& calibration_json);
 
 }  // namespace tumble::io

@@ -7,10 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <cerrno>
 #include <cmath>
-#include <cstring>
-#include <fstream>
 #include <limits>
 #include <sstream>
 #include <system_error>
@@ -19,24 +16,18 @@
 #include "core/error.h"
 #include "core/units.h"
 #include "io/config_keys.h"
+#include "io/text_file.h"
 
 namespace tumble::io {
 namespace {
 
-constexpr std::uintmax_t kLargestFile = 1 << 20;  // [bytes]; a config is a page, anything near this is a mistake
+constexpr std::size_t kLargestMiB = 1;  // a config is a page, anything near this is a mistake
 
 constexpr std::array kProfiles{LifterProfile::kNone,      LifterProfile::kRectangle, LifterProfile::kTriangle,
                                LifterProfile::kTrapezoid, LifterProfile::kWave,      LifterProfile::kPolygon,
                                LifterProfile::kSwivel};
 constexpr std::array kLaws{ContactLaw::kLinear, ContactLaw::kHertz};
 const std::vector<std::string> kBallKeys{"radius", "mass", "density", "share"};
-
-std::string one_line(std::string_view text) {
-  std::string line(text);
-  std::replace_if(
-      line.begin(), line.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20; }, ' ');
-  return line.size() > 300 ? line.substr(0, 300) + " ..." : line;
-}
 
 std::string article(toml::node_type type) {
   switch (type) {
@@ -322,26 +313,6 @@ void apply_set(Config& config, const std::string& assignment) {
   }
 }
 
-std::string read_small_file(const std::filesystem::path& path) {
-  std::error_code error;
-  const auto status = std::filesystem::status(path, error);
-  if (status.type() == std::filesystem::file_type::not_found)
-    throw InputError(path.string(), "no such file; give a MILL.toml");
-  if (error) throw InputError(path.string(), "cannot be read: " + error.message());
-  if (std::filesystem::is_directory(status)) throw InputError(path.string(), "is a folder; give a MILL.toml");
-  errno = 0;
-  std::ifstream file(path, std::ios::binary);
-  if (!file) throw InputError(path.string(), std::string("cannot be read: ") + std::strerror(errno));
-  // Read, not asked for its size: a pipe has none.
-  std::string text(kLargestFile + 1, '\0');
-  file.read(text.data(), static_cast<std::streamsize>(text.size()));
-  if (file.bad()) throw InputError(path.string(), std::string("cannot be read: ") + std::strerror(errno));
-  text.resize(static_cast<std::size_t>(file.gcount()));
-  if (text.size() > kLargestFile)
-    throw InputError(path.string(), "is larger than 1 MiB, so hardly a MILL.toml; give the mill's config");
-  return text;
-}
-
 // Text of a field that is in force; empty where there is nothing to write.
 struct Write {
   const Config& config;
@@ -401,7 +372,12 @@ Config with_sets(Config config, const std::vector<std::string>& sets) {
 }
 
 Config read_config(const std::filesystem::path& path, const std::vector<std::string>& sets) {
-  return parse_config(read_small_file(path), path.string(), sets);
+  return parse_config(read_text(path, "a MILL.toml", kLargestMiB), path.string(), sets);
+}
+
+std::string twin_of(const std::string& key) {
+  const Key* known = find_key(key);
+  return known ? known->excludes : "";
 }
 
 std::string to_toml(const Config& config) {

@@ -19,4 +19,8 @@ Config with_sets(Config config, const std::vector<std::string>& sets);
 // The config as MILL.toml text with every key that is in force; parse_config gives the same config back, to the bit.
 std::string to_toml(const Config& config);
 
+// The key that says the same thing the other way ("mill.speed_rpm" for "mill.speed"): setting one removes the other.
+// Empty where there is none.
+std::string twin_of(const std::string& key);
+
 }  // namespace tumble::io

@@ -4,21 +4,22 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <charconv>
 #include <cmath>
 #include <cstring>
-#include <fstream>
 #include <iterator>
 #include <system_error>
 #include <utility>
 
 #include "core/error.h"
 #include "io/config_keys.h"
+#include "io/text_file.h"
 
 namespace tumble::io {
 namespace fs = std::filesystem;
 namespace {
+
+constexpr std::size_t kLargestMiB = 4096;  // tracks of a long film
 
 bool is_end(char c) { return c == '\n' || c == '\r'; }
 bool is_blank(char c) { return c == ' ' || c == '\t'; }
@@ -119,18 +120,7 @@ CsvTable parse_csv(std::string text, const std::string& name) {
   return table;
 }
 
-CsvTable read_csv(const fs::path& path) {
-  std::error_code error;
-  if (fs::is_directory(path, error)) throw InputError(path.string(), "is a folder; give a CSV file");
-  errno = 0;
-  std::ifstream in(path, std::ios::binary);
-  std::string text;
-  if (in) text.assign(std::istreambuf_iterator<char>(in), {});
-  if (!in || in.bad())
-    throw InputError(path.string(),
-                     std::string("cannot be read: ") + std::strerror(errno ? errno : EIO) + "; give a CSV file");
-  return parse_csv(std::move(text), path.string());
-}
+CsvTable read_csv(const fs::path& path) { return parse_csv(read_text(path, "a CSV file", kLargestMiB), path.string()); }
 
 bool CsvTable::has(const std::string& column) const {
   return std::find(names_.begin(), names_.end(), column) != names_.end();

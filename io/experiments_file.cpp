@@ -4,10 +4,8 @@
 #include <toml++/toml.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
-#include <cstring>
-#include <fstream>
+#include <optional>
 #include <sstream>
 
 #include "core/effects.h"
@@ -15,20 +13,14 @@
 #include "io/config_file.h"
 #include "io/config_keys.h"
 #include "io/csv_file.h"
+#include "io/text_file.h"
 
 namespace tumble::io {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr std::size_t kLargestFile = 4 << 20;  // [bytes]; ten thousand experiments
+constexpr std::size_t kLargestMiB = 4;  // ten thousand experiments
 constexpr std::size_t kLongestName = 200;
-
-std::string one_line(std::string_view text) {
-  std::string line(text);
-  std::replace_if(
-      line.begin(), line.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20; }, ' ');
-  return line.size() > 300 ? line.substr(0, 300) + " ..." : line;
-}
 
 // "power_W" has "power_uncertainty_W" beside it.
 std::string uncertainty_name(const std::string& name) {
@@ -68,6 +60,53 @@ bool is_number_key(const std::string& path) {
   const Effect* effect = find_effect(path.substr(8, dot - 8));
   const EffectParameter* parameter = effect ? find_parameter(*effect, path.substr(dot + 1)) : nullptr;
   return parameter && !parameter->list;
+}
+
+// The nearest key that holds a number: another kind of key is no answer to who wants one.
+std::string nearest_number_key(const std::string& path) {
+  std::vector<std::string> numbers;
+  for (const Key& key : config_keys())
+    if (is_number_key(key.path)) numbers.push_back(key.path);
+  const std::string nearest = nearest_key(path);
+  return is_number_key(nearest) ? nearest : nearest_word(path, numbers);
+}
+
+// What a value (or its standard deviation) of a datum must be; empty where it is right.
+std::string flaw_of(const ScalarDatum& d, bool is_uncertainty, double x) {
+  if (is_uncertainty && !(x > 0)) return fmt::format("found {}, must be > 0 {}", x, d.unit);
+  if (!is_uncertainty && d.is_direction && !(x >= 0 && x < 360))
+    return fmt::format("found {}, must be an angle in degrees, 0 to below 360", x);
+  return "";
+}
+
+struct Flaw {
+  std::string key;  // where it shows; empty: in the experiment as a whole
+  std::string problem;
+};
+
+// What is wrong with an experiment's data taken together, from whatever kind of file it comes.
+std::optional<Flaw> flaw_of(const Experiment& e) {
+  bool any = false;
+  for (const ScalarDatum& d : kScalarData) {
+    const Estimate& m = e.*d.measured;
+    any = any || !std::isnan(m.value);
+    if (!std::isnan(m.se) && std::isnan(m.value))
+      return Flaw{uncertainty_name(d.name), uncertainty_name(d.name) + " without " + d.name};
+  }
+  for (const FileKey& f : kFiles) any = any || !(e.*f.path).empty();
+  if (!any)
+    return Flaw{"",
+                "brings no data; give power_W, torque_N_m, toe_deg, shoulder_deg, film, motion, tracks or "
+                "torque_series"};
+  if (!std::isnan(e.torque.value) && !std::isnan(e.power.value))
+    return Flaw{"torque_N_m", "torque_N_m given beside power_W, which says the same; keep one of the two"};
+  if (int(!e.film.empty()) + int(!e.motion.empty()) + int(!e.tracks.empty()) > 1)
+    return Flaw{"", "more than one of film, motion and tracks; keep one, or name two experiments"};
+  for (const auto& one : e.sets)
+    for (const auto& other : e.sets)
+      if (one.first == twin_of(other.first))
+        return Flaw{"", "sets " + one.first + " and " + other.first + ", which say the same; keep one of the two"};
+  return std::nullopt;
 }
 
 class Reader {
@@ -133,27 +172,12 @@ class Reader {
         refuse_unknown(key, e.name + ": ", node, known_keys());
       }
     }
-    check(e, table);
-    return e;
-  }
-
-  void check(const Experiment& e, const toml::table& table) const {
-    bool any = false;
-    for (const ScalarDatum& d : kScalarData) {
-      const Estimate& m = e.*d.measured;
-      any = any || !std::isnan(m.value);
-      if (!std::isnan(m.se) && std::isnan(m.value))
-        fail(*table.get(uncertainty_name(d.name)), e.name, uncertainty_name(d.name) + " without " + d.name);
+    if (const auto flaw = flaw_of(e)) {
+      const toml::node* node = flaw->key.empty() ? nullptr : table.get(flaw->key);
+      if (node) fail(*node, e.name, flaw->problem);
+      throw InputError(e.place, flaw->problem);
     }
-    for (const FileKey& f : kFiles) any = any || !(e.*f.path).empty();
-    if (!any)
-      throw InputError(e.place,
-                       "brings no data; give power_W, torque_N_m, toe_deg, shoulder_deg, film, motion, tracks "
-                       "or torque_series");
-    if (const auto* node = table.get("torque_N_m"); node && table.contains("power_W"))
-      fail(*node, e.name, "torque_N_m given beside power_W, which says the same; keep one of the two");
-    if (int(!e.film.empty()) + int(!e.motion.empty()) + int(!e.tracks.empty()) > 1)
-      throw InputError(e.place, "more than one of film, motion and tracks; keep one, or name two experiments");
+    return e;
   }
 
   // A table within is the dotted key's next part: { mill.speed = 0.7 } is { "mill.speed" = 0.7 }.
@@ -184,9 +208,7 @@ class Reader {
       const bool value = key == d.name;
       if (!value && key != uncertainty_name(d.name)) continue;
       const double x = number(node, e.name + ": " + key);
-      if (value && d.is_direction && !(x >= 0 && x < 360))
-        fail(node, e.name + ": " + key, fmt::format("found {}, must be an angle in degrees, 0 to below 360", x));
-      if (!value && !(x > 0)) fail(node, e.name + ": " + key, fmt::format("found {}, must be > 0 {}", x, d.unit));
+      if (const std::string flaw = flaw_of(d, !value, x); !flaw.empty()) fail(node, e.name + ": " + key, flaw);
       (value ? (e.*d.measured).value : (e.*d.measured).se) = x;
       return true;
     }
@@ -216,7 +238,7 @@ class Reader {
       }
       if (!is_number_key(key))
         fail(value, "uncertain: " + key,
-             "is no key of MILL.toml that holds a number; did you mean " + nearest_key(key) + "?");
+             "is no key of MILL.toml that holds a number; did you mean " + nearest_number_key(key) + "?");
       const double sd = number(value, "uncertain: " + key);
       if (!(sd > 0)) fail(value, "uncertain: " + key, fmt::format("found {}, must be a standard deviation, > 0", sd));
       all.uncertain.push_back({key, sd, place(value) + ": " + key});
@@ -251,18 +273,7 @@ Experiments parse_experiments(const std::string& toml, const std::string& name, 
 }
 
 Experiments read_experiments(const fs::path& path) {
-  std::error_code error;
-  if (!fs::exists(path, error)) throw InputError(path.string(), "no such file; give an EXPERIMENTS.toml");
-  if (fs::is_directory(path, error)) throw InputError(path.string(), "is a folder; give an EXPERIMENTS.toml");
-  errno = 0;
-  std::ifstream file(path, std::ios::binary);
-  std::string text(kLargestFile + 1, '\0');
-  if (file) file.read(text.data(), static_cast<std::streamsize>(text.size()));
-  if (!file && !file.eof()) throw InputError(path.string(), std::string("cannot be read: ") + std::strerror(errno));
-  text.resize(static_cast<std::size_t>(file.gcount()));
-  if (text.size() > kLargestFile)
-    throw InputError(path.string(),
-                     "is larger than 4 MiB, so hardly an EXPERIMENTS.toml; data go into files of their own");
+  const std::string text = read_text(path, "an EXPERIMENTS.toml", kLargestMiB);
   return parse_experiments(text, path.string(), path.parent_path());
 }
 
@@ -298,13 +309,21 @@ Experiments read_measured(const fs::path& path) {
       if (!values[i].empty()) all.list[i].sets.emplace_back(key, values[i]);
   }
   for (const ScalarDatum& d : kScalarData) {
-    const auto values = table.numbers(d.name, true), sds = table.numbers(uncertainty_name(d.name), true);
-    for (std::size_t i = 0; i < all.list.size(); ++i) {
-      all.list[i].*d.measured = {values[i], sds[i]};
-      if (!std::isnan(sds[i]) && !(sds[i] > 0))
-        throw InputError(table.place(i, uncertainty_name(d.name)), "must be > 0");
+    for (const bool is_uncertainty : {false, true}) {
+      const std::string column = is_uncertainty ? uncertainty_name(d.name) : d.name;
+      const auto values = table.numbers(column, true);
+      for (std::size_t i = 0; i < all.list.size(); ++i) {
+        Estimate& measured = all.list[i].*d.measured;
+        (is_uncertainty ? measured.se : measured.value) = values[i];
+        if (std::isnan(values[i])) continue;
+        if (const std::string flaw = flaw_of(d, is_uncertainty, values[i]); !flaw.empty())
+          throw InputError(table.place(i, column), column + ": " + flaw);
+      }
     }
   }
+  for (std::size_t i = 0; i < all.list.size(); ++i)
+    if (const auto flaw = flaw_of(all.list[i]))
+      throw InputError(table.place(i, flaw->key.empty() ? table.columns().front() : flaw->key), flaw->problem);
   return all;
 }
 

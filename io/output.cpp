@@ -45,6 +45,18 @@ void check_not_input(const fs::path& output, const fs::path& input) {
     throw InputError(output.string(), "is the input itself; give another output");
 }
 
+void check_apart(const std::vector<fs::path>& outputs) {
+  const auto place_of = [](const fs::path& path) {
+    std::error_code error;
+    const fs::path whole = fs::weakly_canonical(fs::absolute(path), error);
+    return error ? path.lexically_normal() : whole;
+  };
+  for (std::size_t i = 0; i < outputs.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j)
+      if (!outputs[i].empty() && !outputs[j].empty() && place_of(outputs[i]) == place_of(outputs[j]))
+        throw InputError(outputs[i].string(), "is named for two outputs; give each a name of its own");
+}
+
 void make_output_folder(const fs::path& path) {
   std::error_code error;
   if (path.empty()) throw InputError("output", "has an empty name; give a folder");

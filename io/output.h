@@ -1,6 +1,7 @@
 #pragma once
 #include <filesystem>
 #include <string>
+#include <vector>
 
 // Outputs appear whole or not at all: written beside their final name, then renamed.
 namespace tumble::io {
@@ -11,6 +12,10 @@ void check_output_file(const std::filesystem::path& path, bool force);
 
 // Throws InputError where the output is the very file that is read: even by force that would destroy it.
 void check_not_input(const std::filesystem::path& output, const std::filesystem::path& input);
+
+// Throws InputError where two outputs of one command have the same name: the later would replace the earlier. Empty
+// names do not count.
+void check_apart(const std::vector<std::filesystem::path>& outputs);
 
 // Makes the folder if it is not there (its parent must exist); throws InputError where it cannot be written to.
 void make_output_folder(const std::filesystem::path& path);

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
@@ -90,6 +91,17 @@ void write_all(hid_t file, const Sweep& sweep) {
   write_points(file, sweep);
 }
 
+template <typename Read>
+auto from_sweep(const fs::path& path, const Read& read) {
+  const auto held = hdf5::lock();
+  const hdf5::File file = hdf5::open_input(path, kWanted);
+  try {
+    return read(file);
+  } catch (const hdf5::Failure&) {
+    throw InputError(path.string(), std::string("is an HDF5 file of another kind; give ") + kWanted);
+  }
+}
+
 }  // namespace
 
 void write_sweep(const fs::path& path, const Sweep& sweep) {
@@ -128,13 +140,25 @@ std::string definition_of(const Sweep& sweep) {
 }
 
 std::string read_sweep_definition(const fs::path& path) {
-  const auto held = hdf5::lock();
-  const hdf5::File file = hdf5::open_input(path, kWanted);
-  try {
-    return hdf5::read_string(file, "definition");
-  } catch (const hdf5::Failure&) {
-    throw InputError(path.string(), std::string("is an HDF5 file of another kind; give ") + kWanted);
-  }
+  return from_sweep(path, [](hid_t file) { return hdf5::read_string(file, "definition"); });
+}
+
+std::vector<Estimate> read_sweep_points(const fs::path& path, const RunQuantity& quantity) {
+  return from_sweep(path, [&](hid_t file) {
+    const auto value = hdf5::read_array<double>(file, "points/" + quantity.name),
+               se = hdf5::read_array<double>(file, "points/" + quantity.se_name());
+    std::vector<Estimate> points;
+    for (std::size_t p = 0; p < std::min(value.size(), se.size()); ++p) points.push_back({value[p], se[p]});
+    return points;
+  });
+}
+
+std::size_t read_sweep_failures(const fs::path& path) {
+  return from_sweep(path, [](hid_t file) {  // a run that failed has no numbers
+    const auto torque = hdf5::read_array<double>(file, "runs/" + run_quantity("torque_N_m").name);
+    return static_cast<std::size_t>(
+        std::count_if(torque.begin(), torque.end(), [](double t) { return std::isnan(t); }));
+  });
 }
 
 std::vector<Estimate> at_point(const Sweep& sweep, std::size_t point, const RunQuantity& quantity) {

@@ -19,6 +19,10 @@ void write_sweep_csv(const std::filesystem::path& path, const Sweep& sweep);
 std::string definition_of(const Sweep& sweep);
 std::string read_sweep_definition(const std::filesystem::path& path);
 
+// What a complete sweep came to, read back: a quantity at every point, and how many of its runs failed.
+std::vector<Estimate> read_sweep_points(const std::filesystem::path& path, const RunQuantity& quantity);
+std::size_t read_sweep_failures(const std::filesystem::path& path);
+
 // A quantity at a point: its repeats that did not fail, and their mean with the standard error of that mean.
 std::vector<Estimate> at_point(const Sweep& sweep, std::size_t point, const RunQuantity& quantity);
 Estimate over_repeats(const Sweep& sweep, std::size_t point, const RunQuantity& quantity);

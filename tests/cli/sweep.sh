@@ -36,11 +36,34 @@ done
 for end in h5 csv html; do same a.$end b.$end; done
 [ ! -e b.h5.runs ] || fail "b.h5.runs is left behind"
 "$tumble" "${sweep[@]}" --resume -o b.h5 --csv b.csv || fail "a complete sweep is not done at once"
+"$tumble" "${sweep[@]}" --resume -o b.h5 --csv b.csv --json >b.json || fail "a complete sweep tells no summary"
+"$tumble" "${sweep[@]}" --force -o b.h5 --csv b.csv --json >again.json || fail "the sweep by force"
+same b.json again.json
+grep -q '"mill.speed": 0.6' b.json || fail "the summary holds no points: $(cat b.json)"
 refused 'of something else' sweep "$mill" --vary mill.speed=0.6,0.7 "${short[@]}" --resume -o b.h5
 refused exists sweep "$mill" --vary mill.speed=0.6,0.7 "${short[@]}" -o b.h5
 refused 'more than a million' sweep "$mill" --vary mill.speed=0.1:1.1:0.0001 --vary contact.friction=0.1:0.9:0.0005 -o c.h5
 refused 'did you mean mill.speed' sweep "$mill" --vary mill.sped=0.1,0.2 -o c.h5
 refused slurm sweep "$mill" --vary mill.speed=0.1,0.2 --engine slurm -o c.h5
+
+refused 'says the same as mill.speed; vary one' sweep "$mill" --vary mill.speed=0.6,0.7 --vary mill.speed_rpm=30,40 -o c.h5
+refused 'value 0.60 twice' sweep "$mill" --vary mill.speed=0.6,0.60 -o c.h5
+refused 'does not lead from' sweep "$mill" --vary mill.speed=0.6:1.0:0 -o c.h5
+refused 'does not lead from' sweep "$mill" --vary mill.speed=0.6:1.0:-0.1 -o c.h5
+refused 'must be numbers' sweep "$mill" --vary mill.speed=0.6:nan:0.1 -o c.h5
+refused 'effects.rolling_resistance.coefficient: is 2' sweep "$mill" \
+  --vary effects.rolling_resistance.coefficient=0:2:1 -o c.h5
+refused 'c.html: is named for two outputs' sweep "$mill" --vary mill.speed=0.6,0.7 -o c.html
+refused 'c.h5: is named for two outputs' sweep "$mill" --vary mill.speed=0.6,0.7 -o c.h5 --csv ./c.h5
+cp "$mill" input.toml
+refused 'is the input itself' sweep input.toml --vary mill.speed=0.6,0.7 -o c.h5 --csv input.toml --force
+cmp -s "$mill" input.toml || fail "the input was replaced"
+for bad in '' $'mill.speed,power_W\n0.6,nan' $'mill.speed,power_W\n0.6' $'mill.speed,power_W\n0.6,' $'mill.sped,power_W\n0.6,5'; do
+  printf '%s\n' "$bad" >m.csv
+  refused 'm.csv' sweep "$mill" --vary mill.speed=0.6,0.7 --measured m.csv -o c.h5
+done
+refused 'is a folder; give an EXPERIMENTS.toml' sweep "$mill" --vary mill.speed=0.6,0.7 --measured . -o c.h5
+for left in c.*; do [ -e "$left" ] && fail "a refused sweep left $left"; done
 
 experiments() {  # POWER of the held-out one
   for speed in 0.6 0.8; do
@@ -63,11 +86,33 @@ for file in model.toml calibration.json report.html runs.csv; do same one/$file 
 "$tumble" "${fit[@]}" --measured f.toml -o three || fail "the calibration with other held-out data"
 same one/model.toml three/model.toml
 same one/runs.csv three/runs.csv
+"$tumble" "${fit[@]}" --measured e.toml -o one --resume --json >one.json || fail "a complete calibration is not done at once"
+same one.json one/calibration.json
 cmp -s one/calibration.json three/calibration.json && fail "held-out data are not reported"
 "$tumble" simulate one/model.toml -o run.h5 --quiet || fail "model.toml does not run"
 refused 'which --fit mill.speed_rpm would change' calibrate "$mill" --fit mill.speed_rpm=20:30 --measured e.toml -o four
 refused 'need at least' calibrate "$mill" --fit contact.friction=0.1:0.5 --measured e.toml --simulations 3 -o four
 refused 'LOW:HIGH' calibrate "$mill" --fit contact.friction=0.5:0.1 --measured e.toml -o four
+refused 'between the ends.*charge.count.*whole' calibrate "$mill" --fit charge.count=50:100 --measured e.toml -o four
+refused 'says the same as' calibrate "$mill" --fit charge.count=50:99 --fit charge.filling=0.1:0.3 --measured e.toml -o four
+refused 'friction: is -1' calibrate "$mill" --fit contact.friction=-1:0.5 --measured e.toml -o four
+refused 'share: is 2' calibrate "$mill" --fit effects.hertz_contact.share=0:2 --measured e.toml -o four
+
+# Each mistake in EXPERIMENTS.toml names the experiment and what is wrong.
+wrong() {  # PATTERN LINES
+  printf '[[experiment]]\nname = "J35"\n%s\n' "$2" >wrong.toml
+  refused "wrong.toml:[0-9]*: $1" calibrate "$mill" --fit contact.friction=0.1:0.5 --measured wrong.toml -o four
+}
+wrong 'J35: mill.sped: unknown key' $'set = { "mill.sped" = 0.7 }\npower_W = 5'
+wrong 'J35: effects.cohesion.force: is -1' $'set = { "effects.cohesion.force" = -1 }\npower_W = 5'
+wrong 'J35: power_W: must be a number' 'power_W = [5]'
+wrong 'J35: toe_uncertainty: unknown key; did you mean toe_uncertainty_deg' $'toe_deg = 230\ntoe_uncertainty = 2'
+wrong 'J35: film: no such file' 'film = "nowhere.mp4"'
+wrong 'J35: .: is a folder; give a motion file' 'motion = "."'
+for bad in '' 'time_s,torque_N_m' $'time_s,torque_N_m\n0,1\n1,' $'time_s,torque_N_m\n0,nan' $'time_s,torque_N_m\n1,1\n0,1'; do
+  printf '%s\n' "$bad" >series.csv
+  wrong 'J35: series.csv' 'torque_series = "series.csv"'
+done
 [ ! -e four ] || fail "a refused calibration left its folder"
 
 [ "$failures" -eq 0 ] && echo "campaigns are as promised"

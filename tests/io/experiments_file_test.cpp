@@ -107,6 +107,10 @@ TEST(ExperimentsFile, NamesPlaceFindingAndRemedy) {
       {head + "power_W = 1\n[uncertain]\n\"contact.frction\" = 1\n",
        "e.toml:5: uncertain: contact.frction: is no key of MILL.toml that holds a number; did you mean "
        "contact.friction?"},
+      {head + "power_W = 1\n[uncertain]\n\"contact.law\" = 1\n",
+       "e.toml:5: uncertain: contact.law: is no key of MILL.toml that holds a number; did you mean contact.friction?"},
+      {head + "power_W = 1\nset = { mill.speed = 0.7, mill.speed_rpm = 40 }\n",
+       "e.toml:1: a: sets mill.speed and mill.speed_rpm, which say the same; keep one of the two"},
       {head + "power_W = 1\n[uncertain]\n\"contact.friction\" = -1\n",
        "e.toml:5: uncertain: contact.friction: found -1, must be a standard deviation, > 0"},
   };
@@ -141,6 +145,28 @@ TEST_F(ExperimentsInFolder, ReadsATableOfMeasurements) {
   EXPECT_TRUE(all.list[1].hold_out);
   std::ofstream(folder_ / "bad.csv") << "speed_rpm,power_W\n20,5.5\n";
   EXPECT_THROW(read_measured(folder_ / "bad.csv"), InputError);
+}
+
+TEST_F(ExperimentsInFolder, RefusesInATableWhatItRefusesInEXPERIMENTS) {
+  const auto message = [&](const std::string& text) -> std::string {
+    std::ofstream(folder_ / "m.csv") << text;
+    try {
+      read_measured(folder_ / "m.csv");
+    } catch (const InputError& e) {
+      return e.what();
+    }
+    return "no error";
+  };
+  EXPECT_THAT(message("mill.speed,toe_deg\n0.6,230\n0.7,400\n"),
+              HasSubstr("m.csv:3:5: toe_deg: found 400, must be an angle in degrees, 0 to below 360"));
+  EXPECT_THAT(message("mill.speed,power_W\n0.6,5\n0.7,\n"), HasSubstr("m.csv:3:1: brings no data; give power_W"));
+  EXPECT_THAT(message("mill.speed\n0.6\n"), HasSubstr("m.csv:2:1: brings no data"));
+  EXPECT_THAT(message("power_W,torque_N_m\n5,2\n"), HasSubstr("m.csv:2:3: torque_N_m given beside power_W"));
+  EXPECT_THAT(message("toe_deg,power_uncertainty_W\n230,2\n"),
+              HasSubstr("m.csv:2:5: power_uncertainty_W without power_W"));
+  EXPECT_THAT(message("power_W,power_uncertainty_W\n5,-2\n"), HasSubstr("power_uncertainty_W: found -2, must be > 0"));
+  EXPECT_THAT(message("charge.count,charge.filling,power_W\n5,0.3,7\n"),
+              HasSubstr("which say the same; keep one of the two"));
 }
 
 }  // namespace
