@@ -56,6 +56,32 @@ simulate 2 'hertz' mill.toml --set contact.law=herz
 simulate 2 'rolling_resistance' mill.toml --set effects.rolling_resistence.coefficient=0.05
 simulate 2 'rolling_resistance.coefficient' mill.toml --set effects.rolling_resistance.coefficient=-1
 
+# --- shells and effects
+shell() { refused 2 "$1" shell.svg "$tumble" shell mill.toml -o shell.svg "${@:2}"; }
+polygon() { shell "$1" --set mill.lifters.profile=polygon --set "mill.lifters.points=$2"; }
+polygon 'crosses itself' '[[0,-0.01],[0.02,0.01],[0.02,-0.01],[0,0.01]]'
+polygon 'from the leading to the trailing foot' '[[0,0.01],[0.02,0.01],[0.02,-0.01],[0,-0.01]]'
+polygon 'are 2, must be 3' '[[0,-0.01],[0.02,0.01]]'
+polygon 'found 5, must be a list' 5
+polygon 'points\[1\]: found a list, must be \[height, across\]' '[[0,-0.01],[0.02],[0,0.01]]'
+polygon 'points\[1\]: found nan' '[[0,-0.01],[0.02,nan],[0,0.01]]'
+shell 'points: are missing' --set mill.lifters.profile=polygon
+shell 'reaches the mill' --set mill.lifters.height=0.3
+shell 'overlap' --set mill.lifters.count=90
+shell 'has no meaning for a wave' --set mill.lifters.profile=wave --set mill.lifters.leading_angle_deg=20
+with 's/rectangle/wave/; /^height/d' wrong.toml && refused 2 'lifters.height: is missing' shell.svg "$tumble" shell wrong.toml -o shell.svg
+for number in mill.lifters.height mill.speed charge.count effects.hertz_contact.share effects.cohesion.force; do
+  shell "$number: found a list" --set "$number=[1]"
+done
+shell 'viscosity: is -1' --set effects.fluid_drag.viscosity=-1
+shell 'drop: is 1.5, must lie between' --set effects.impact_restitution.drop=1.5
+shell 'share: is 2, must lie between 0 and 1' --set effects.hertz_contact.share=2
+shell 'names lifter 18, the mill.s lifters are 0 to 17' --set 'effects.missing_lifters.lifters=[18]'
+shell 'lifters: found 3.5, must be a list' --set effects.missing_lifters.lifters=3.5
+shell 'order: is 1.5, must be whole' --set effects.speed_ripple.amplitude=0.1 --set effects.speed_ripple.order=1.5
+refused 2 'give SHELL.svg or SHELL.csv' shell.pdf "$tumble" shell mill.toml -o shell.pdf
+refused 2 '--chord' shell.csv "$tumble" shell mill.toml -o shell.csv --chord 0
+
 # --- outputs
 refused 2 'nowhere' "" "$tumble" simulate mill.toml -o nowhere/run.h5
 refused 2 'folder' "" "$tumble" simulate mill.toml -o .
