@@ -49,6 +49,10 @@ void rule(Canvas& canvas, double y) {
   canvas.meshes.line({panel.left, std::round(y)}, {panel.right, std::round(y)}, canvas.stroke(1.0), ink::kFaint);
 }
 
+// Letters do not shrink below what can be read, so lines of a tiny picture would stand in each other: which are so many
+// units apart and have no room leave the lesser one out.
+bool has_room(const Canvas& canvas, double units_between_lines) { return canvas.px(units_between_lines) >= 9; }
+
 // A small label, a value below it, and a remark below that.
 void value_and_unit(Canvas& canvas, double x, double y, const std::string& value, const std::string& unit) {
   const TextStyle large{canvas.letter(23), ink::kText, Weight::kBold};
@@ -59,7 +63,7 @@ void value_and_unit(Canvas& canvas, double x, double y, const std::string& value
 
 void label_and_remark(Canvas& canvas, double x, double y, const std::string& label, const std::string& remark) {
   canvas.text.add(label, x, y, quiet(canvas, 12.5));
-  canvas.text.add(remark, x, y + canvas.px(47), quiet(canvas, 12.5));
+  if (has_room(canvas, 19)) canvas.text.add(remark, x, y + canvas.px(47), quiet(canvas, 12.5));
 }
 
 void draw_colour_bar(Canvas& canvas, double left, double right, double top, const ColourScale& scale) {
@@ -219,7 +223,8 @@ void draw_moving_panel(Canvas& canvas, const Panel& panel, const Frame& frame) {
   text.add(seconds, plan.left, plan.y(116), clock);
   text.add("s", plan.left + text.width(seconds, clock) + canvas.px(8), plan.y(116), {canvas.letter(20), ink::kQuiet});
   const double revolutions = frame.time * std::abs(panel.setup.mill_speed) / (2 * kPi);
-  text.add(fmt::format("revolution {:.2f}", revolutions), plan.right, plan.y(95), quiet(canvas, 13, Align::kRight));
+  if (has_room(canvas, 21))
+    text.add(fmt::format("revolution {:.2f}", revolutions), plan.right, plan.y(95), quiet(canvas, 13, Align::kRight));
 
   const double running = panel.trace.running(frame.time);
   const double torque = std::isnan(running) ? frame.observed.torque : running, mean = panel.trace.mean();
