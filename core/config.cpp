@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <numeric>
 
 #include "core/angle.h"
+#include "core/config_checker.h"
 #include "core/effects.h"
 #include "core/error.h"
 #include "core/lifter_check.h"
@@ -14,36 +14,7 @@
 namespace tumble {
 namespace {
 
-std::string number(double v) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.6g", v);
-  return text;
-}
-
-struct Checker {
-  const Config& config;
-
-  [[noreturn]] void fail(const std::string& key, const std::string& problem) const {
-    throw InputError(place_of(config, key), problem);
-  }
-  // NaN passes: not given.
-  void positive(const std::string& key, double v, const char* unit) const {
-    if (v <= 0 || std::isinf(v)) fail(key, "is " + number(v) + ", must be a positive number" + in(unit));
-  }
-  void not_negative(const std::string& key, double v, const char* unit) const {
-    if (v < 0 || std::isinf(v)) fail(key, "is " + number(v) + ", must be 0 or more" + in(unit));
-  }
-  void range(const std::string& key, double v, double low, double high, const char* unit) const {
-    if (v < low || v > high)
-      fail(key, "is " + number(v) + ", must lie between " + number(low) + " and " + number(high) + in(unit));
-  }
-  void given(const std::string& key, double v, const std::string& what) const {
-    if (std::isnan(v)) fail(key, "is missing; give " + what);
-  }
-  static std::string in(const char* unit) { return *unit ? std::string(" ") + unit : ""; }
-};
-
-void check_mill(const Checker& c, const Mill& m) {
+void check_mill(const ConfigChecker& c, const Mill& m) {
   c.positive("mill.diameter", m.diameter, "m");
   c.positive("mill.length", m.length, "m");
   c.range("mill.speed", m.speed, 0, 5, "of critical speed (for rev/min use mill.speed_rpm)");
@@ -55,13 +26,13 @@ void check_mill(const Checker& c, const Mill& m) {
   if (m.slices && *m.slices < 1) c.fail("mill.slices", "is " + std::to_string(*m.slices) + ", must be 1 or more");
 }
 
-void check_charge(const Checker& c, const Config& config) {
+void check_charge(const ConfigChecker& c, const Config& config) {
   const ChargeMix& charge = config.charge;
   if (!std::isnan(charge.filling) && charge.count)
     c.fail("charge.count", "excludes charge.filling; keep one of the two");
   if (charge.filling <= 0 || charge.filling > 0.8)
     c.fail("charge.filling",
-           "is " + number(charge.filling) +
+           "is " + shown(charge.filling) +
                ", must be above 0 and at most 0.8 (a fraction of the shell's area; mills run at 0.2 to 0.45)");
   if (charge.count && (*charge.count < 1 || *charge.count > 10'000'000))
     c.fail("charge.count", "is " + std::to_string(*charge.count) + ", must lie between 1 and 10000000");
@@ -72,9 +43,8 @@ void check_charge(const Checker& c, const Config& config) {
     c.positive("charge.balls", ball.mass, "kg for a mass");
     c.positive("charge.balls", ball.share, "for a share");
     if (ball.radius >= tip)
-      c.fail("charge.balls", "a ball of radius " + number(ball.radius) +
-                                 " m does not fit into the mill, which leaves " + number(tip) +
-                                 " m inside the lifters; radius and diameter are in metres");
+      c.fail("charge.balls", "a ball of radius " + shown(ball.radius) + " m does not fit into the mill, which leaves " +
+                                 shown(tip) + " m inside the lifters; radius and diameter are in metres");
   }
   if (charge.balls.empty() || std::isnan(config.mill.diameter)) return;
   if (std::any_of(charge.balls.begin(), charge.balls.end(), [](const BallClass& b) { return std::isnan(b.radius); }))
@@ -85,11 +55,11 @@ void check_charge(const Checker& c, const Config& config) {
   // A whole number of balls may overshoot the filling that was asked for; a count has no such excuse.
   if (filling > (charge.count ? 0.8 : 0.85))
     c.fail(charge.count ? "charge.count" : "charge.filling",
-           std::to_string(std::accumulate(counts.begin(), counts.end(), 0)) + " balls fill " + number(filling) +
+           std::to_string(std::accumulate(counts.begin(), counts.end(), 0)) + " balls fill " + shown(filling) +
                " of the mill, must be at most 0.8; use fewer or smaller balls");
 }
 
-void check_contact(const Checker& c, const Contact& k) {
+void check_contact(const ConfigChecker& c, const Contact& k) {
   c.positive("contact.normal_stiffness", k.normal_stiffness, "N/m");
   c.not_negative("contact.tangential_stiffness", k.tangential_stiffness, "N/m");
   c.not_negative("contact.friction", k.friction, "");
@@ -101,7 +71,7 @@ void check_contact(const Checker& c, const Contact& k) {
   c.range("contact.wall.restitution", k.wall.restitution, 0.01, 1, "");
 }
 
-void check_effects(const Checker& c, const Config& config) {
+void check_effects(const ConfigChecker& c, const Config& config) {
   for (const auto& [name, settings] : config.effects) {
     const Effect* effect = find_effect(name);
     const std::string table = "effects." + name;
@@ -117,11 +87,11 @@ void check_effects(const Checker& c, const Config& config) {
       if (!p.list && given->second.size() != 1) c.fail(table + "." + p.name, "must be one number");
       for (const double v : given->second)
         if ((p.list || p.whole) && v != std::floor(v))
-          c.fail(table + "." + p.name, "is " + number(v) + ", must be whole");
+          c.fail(table + "." + p.name, "is " + shown(v) + ", must be whole");
       if (!p.list || config.mill.lifters.count < 1) continue;
       for (const double v : given->second)
         if (v >= config.mill.lifters.count)
-          c.fail(table + "." + p.name, "names lifter " + number(v) + ", the mill's lifters are 0 to " +
+          c.fail(table + "." + p.name, "names lifter " + shown(v) + ", the mill's lifters are 0 to " +
                                            std::to_string(config.mill.lifters.count - 1));
     }
     for (const auto& [key, values] : settings)
@@ -133,7 +103,7 @@ void check_effects(const Checker& c, const Config& config) {
     c.fail("contact.law", "is \"hertz\", the whole of effects.hertz_contact; keep one of the two");
 }
 
-void check_run(const Checker& c, const RunPlan& run) {
+void check_run(const ConfigChecker& c, const RunPlan& run) {
   c.range("run.spin_up", run.spin_up, 0, 1e6, "revolutions");
   c.positive("run.revolutions", run.revolutions, "revolutions");
   c.range("run.revolutions", run.revolutions, 0, 1e6, "revolutions");
@@ -149,7 +119,7 @@ std::string place_of(const Config& config, const std::string& key) {
 }
 
 void check(const Config& config) {
-  const Checker c{config};
+  const ConfigChecker c{config};
   check_mill(c, config.mill);
   check_effects(c, config);  // the lifters' wear is one of them
   check_lifters(config);
@@ -159,7 +129,7 @@ void check(const Config& config) {
 }
 
 void check_complete(const Config& config) {
-  const Checker c{config};
+  const ConfigChecker c{config};
   c.given("mill.diameter", config.mill.diameter, "the diameter inside the shell in m");
   if (std::isnan(config.mill.speed) && std::isnan(config.mill.speed_rpm))
     c.fail("mill.speed", "is missing; give the fraction of critical speed, or mill.speed_rpm");
@@ -235,7 +205,7 @@ std::vector<int> class_counts(const Config& config) {
   const double guess = config.charge.filling * kSettledAreaShare * shell_area / mean_area;
   if (guess > 1e7)
     throw InputError(place_of(config, "charge.filling"),
-                     "needs " + number(guess) + " balls, must be at most 10000000; radii are in metres");
+                     "needs " + shown(guess) + " balls, must be at most 10000000; radii are in metres");
   int best = std::max(1, static_cast<int>(guess) - 2);
   const auto error = [&](int n) { return std::abs(filling_of(config, split(n)) - config.charge.filling); };
   for (int n = best + 1; n <= static_cast<int>(guess) + 3; ++n)

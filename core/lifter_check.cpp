@@ -1,10 +1,10 @@
 #include "core/lifter_check.h"
 
 #include <cmath>
-#include <cstdio>
 #include <string>
 
 #include "core/angle.h"
+#include "core/config_checker.h"
 #include "core/effects.h"
 #include "core/error.h"
 #include "core/lifter_section.h"
@@ -15,33 +15,8 @@ namespace {
 constexpr std::size_t kMostPoints = 64;
 constexpr const char* kProfiles = "\"rectangle\", \"triangle\", \"trapezoid\", \"wave\", \"polygon\", \"swivel\"";
 
-std::string number(double v) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.6g", v);
-  return text;
-}
-
-struct Checker {
-  const Config& config;
-
-  [[noreturn]] void fail(const std::string& key, const std::string& problem) const {
-    throw InputError(place_of(config, "mill.lifters." + key), problem);
-  }
-  // NaN passes: not given.
-  void length(const std::string& key, double v) const {
-    if (v <= 0 || std::isinf(v)) fail(key, "is " + number(v) + ", must be a positive number m");
-  }
-  void range(const std::string& key, double v, double low, double high, const char* unit) const {
-    if (v < low || v > high)
-      fail(key, "is " + number(v) + ", must lie between " + number(low) + " and " + number(high) + " " + unit);
-  }
-  void given(const std::string& key, double v, const std::string& what) const {
-    if (std::isnan(v)) fail(key, "is missing; give " + what);
-  }
-};
-
 // A key that this profile would not heed is a slip; angles of 0 say nothing.
-void check_unheeded(const Checker& c, const Lifters& l) {
+void check_unheeded(const ConfigChecker& c, const Lifters& l) {
   const bool slanted = l.profile == LifterProfile::kTriangle || l.profile == LifterProfile::kTrapezoid;
   if (!slanted && (l.leading_angle_deg > 0 || l.trailing_angle_deg > 0))
     c.fail(l.leading_angle_deg > 0 ? "leading_angle_deg" : "trailing_angle_deg",
@@ -53,28 +28,28 @@ void check_unheeded(const Checker& c, const Lifters& l) {
     c.fail("points", std::string("have no meaning for a ") + name_of(l.profile) + "; use profile = \"polygon\"");
 }
 
-void check_faces(const Checker& c, const Lifters& l) {
+void check_faces(const ConfigChecker& c, const Lifters& l) {
   const auto run_in = [&](double angle_deg) { return l.height * std::tan(radians(angle_deg)); };
   if (l.profile == LifterProfile::kTrapezoid) {
     const double trailing = std::isnan(l.trailing_angle_deg) ? l.leading_angle_deg : l.trailing_angle_deg;
     const double feet = run_in(l.leading_angle_deg) + run_in(trailing);
     if (feet > l.width)
-      c.fail("width", "is " + number(l.width) + " m, the two faces cross below the top; must be at least " +
-                          number(feet) + " m with these angles and height");
+      c.fail("width", "is " + shown(l.width) + " m, the two faces cross below the top; must be at least " +
+                          shown(feet) + " m with these angles and height");
   }
   if (l.profile != LifterProfile::kTriangle) return;
   const double leading = run_in(l.leading_angle_deg), trailing = run_in(l.trailing_angle_deg);
   if (std::abs(leading + trailing - l.width) > 0.02 * l.width)
-    c.fail("width", "is " + number(l.width) + " m, but height and the two angles make " + number(leading + trailing) +
+    c.fail("width", "is " + shown(l.width) + " m, but height and the two angles make " + shown(leading + trailing) +
                         " m; give the width and one angle");
   const bool by_leading = leading > l.width * (1 + 1e-9);
   if (by_leading || trailing > l.width * (1 + 1e-9))
     c.fail(by_leading ? "leading_angle_deg" : "trailing_angle_deg",
            "puts the apex beyond the other foot; with this height and width it is at most " +
-               number(degrees(std::atan(l.width / l.height))) + " degrees");
+               shown(degrees(std::atan(l.width / l.height))) + " degrees");
 }
 
-void check_points(const Checker& c, const Mill& m) {
+void check_points(const ConfigChecker& c, const Mill& m) {
   const auto& points = m.lifters.points;
   if (points.empty()) return;
   if (points.size() < 3 || points.size() > kMostPoints)
@@ -83,24 +58,24 @@ void check_points(const Checker& c, const Mill& m) {
   double highest = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const auto [height, across] = points[i];
-    const std::string which = "point " + std::to_string(i + 1) + " [" + number(height) + ", " + number(across) + "] ";
+    const std::string which = "point " + std::to_string(i + 1) + " [" + shown(height) + ", " + shown(across) + "] ";
     const bool foot = i == 0 || i + 1 == points.size();
     if (!std::isfinite(height) || !std::isfinite(across)) c.fail("points", which + "is not a place; give finite m");
     if (foot && std::abs(height) > 1e-9) c.fail("points", which + "is a foot; its height above the shell must be 0");
     if (!foot && height <= 0) c.fail("points", which + "must lie above the shell: between the feet, heights are > 0");
     if (height >= radius || std::abs(across) >= radius)
-      c.fail("points", which + "is further off than the mill's radius " + number(radius) + " m; lengths are in m");
+      c.fail("points", which + "is further off than the mill's radius " + shown(radius) + " m; lengths are in m");
     if (i > 0 && std::hypot(height - points[i - 1][0], across - points[i - 1][1]) < 1e-6 * radius)
       c.fail("points", which + "repeats the point before it");
     highest = std::max(highest, height);
   }
   if (std::abs(m.lifters.height - highest) > 1e-3 * highest)
-    c.fail("height", "is " + number(m.lifters.height) + " m, but the points reach " + number(highest) +
+    c.fail("height", "is " + shown(m.lifters.height) + " m, but the points reach " + shown(highest) +
                          " m; leave it out, the points say it");
 }
 
 // Which key to mend where the section as a whole does not work.
-void check_section(const Checker& c, const Mill& m) {
+void check_section(const ConfigChecker& c, const Mill& m) {
   const Lifters& l = m.lifters;
   const double radius = m.diameter / 2;
   const LifterSection section = make_section(m, {});
@@ -114,15 +89,14 @@ void check_section(const Checker& c, const Mill& m) {
                          "; give them in order from the trailing foot over the top to the leading foot, across > 0 in "
                          "the direction of rotation");
   if (crowded)
-    c.fail(
-        by_points ? "points" : "count",
-        std::to_string(l.count) + " lifters " +
-            (by_points ? std::string() : "of width " + number(l.width) + " m and height " + number(l.height) + " m ") +
-            "overlap in a mill of diameter " + number(m.diameter) + " m; use fewer or narrower ones");
+    c.fail(by_points ? "points" : "count",
+           std::to_string(l.count) + " lifters " +
+               (by_points ? std::string() : "of width " + shown(l.width) + " m and height " + shown(l.height) + " m ") +
+               "overlap in a mill of diameter " + shown(m.diameter) + " m; use fewer or narrower ones");
   if (l.profile == LifterProfile::kSwivel)
-    c.fail("swivel_angle_deg", "is " + number(l.swivel_angle_deg) + ", the tilted bar " + flaw +
+    c.fail("swivel_angle_deg", "is " + shown(l.swivel_angle_deg) + ", the tilted bar " + flaw +
                                    "; tilt it less, or give a higher or narrower bar");
-  c.fail("height", "is " + number(l.height) + " m, a lifter of width " + number(l.width) + " m " + flaw +
+  c.fail("height", "is " + shown(l.height) + " m, a lifter of width " + shown(l.width) + " m " + flaw +
                        "; give a higher or narrower one");
 }
 
@@ -140,13 +114,13 @@ void check_worn(const Config& config) {
 }  // namespace
 
 void check_lifters(const Config& config) {
-  const Checker c{config};
+  const ConfigChecker c{config, "mill.lifters."};
   const Mill& m = config.mill;
   const Lifters& l = m.lifters;
   if (l.profile == LifterProfile::kNone) return;
   c.range("count", l.count, 0, 100000, "");
-  c.length("height", l.height);
-  c.length("width", l.width);
+  c.positive("height", l.height, "m");
+  c.positive("width", l.width, "m");
   c.range("leading_angle_deg", l.leading_angle_deg, 0, 85, "degrees from the radius");
   c.range("trailing_angle_deg", l.trailing_angle_deg, 0, 85, "degrees from the radius");
   c.range("swivel_angle_deg", l.swivel_angle_deg, -60, 60, "degrees from the radius");
@@ -154,7 +128,7 @@ void check_lifters(const Config& config) {
   const double radius = m.diameter / 2;
   if (l.height >= radius)
     c.fail("height",
-           "is " + number(l.height) + " m, reaches the mill's axis; must be below the radius " + number(radius) + " m");
+           "is " + shown(l.height) + " m, reaches the mill's axis; must be below the radius " + shown(radius) + " m");
   check_faces(c, l);
   if (l.profile == LifterProfile::kPolygon) check_points(c, m);
   if (l.count < 1) return;
@@ -163,7 +137,7 @@ void check_lifters(const Config& config) {
 }
 
 void check_lifters_complete(const Config& config) {
-  const Checker c{config};
+  const ConfigChecker c{config, "mill.lifters."};
   const Lifters& l = config.mill.lifters;
   // A file with sizes and no shape would give a smooth shell that nobody asked for.
   const auto said = [&](const char* key) { return config.origin.contains(std::string("mill.lifters.") + key); };
