@@ -227,10 +227,7 @@ ChargeMotion measure_film(const std::string& path, const FilmOptions& options, c
   }
   statistics.finish(motion);
   shrink_to_film(motion, reader.enlarged());
-  if (std::isnan(view.metres_per_pixel)) {
-    forget_lengths(motion);
-    motion.caveats.push_back("scale unknown: give mill.diameter or charge.balls");
-  }
+  if (std::isnan(view.metres_per_pixel)) forget_lengths(motion);
   report(progress, 1.0);
   return motion;
 }

@@ -199,10 +199,7 @@ ChargeMotion measure_stills(const std::string& folder, const FilmOptions& option
     motion.profile[i].shoulder_deg = edges[i].shoulder[kHalf];
   }
   motion.filling = mean_of_series(fillings);
-  if (std::isnan(view.metres_per_pixel)) {
-    forget_lengths(motion);
-    motion.caveats.push_back("scale unknown: give mill.diameter or charge.balls");
-  }
+  if (std::isnan(view.metres_per_pixel)) forget_lengths(motion);
   report(progress, 1.0);
   return motion;
 }

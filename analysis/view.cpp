@@ -142,6 +142,7 @@ void forget_lengths(ChargeMotion& m) {
   m.head = m.centre_of_circulation_x = m.centre_of_circulation_y = {};
   m.mill_radius = m.tip_radius = kNotGiven;
   m.field = {};
+  m.caveats.push_back("scale unknown: give mill.diameter or charge.balls");
 }
 
 }  // namespace tumble::analysis

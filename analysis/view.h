@@ -32,7 +32,7 @@ MillView find_view(const std::vector<std::vector<Detection>>& balls, const BallL
 // Places and lengths in pixels of enlarged pictures become those of the film itself.
 void shrink_to_film(ChargeMotion& motion, int enlarged);
 
-// Lengths of a motion measured without a scale become NaN; angles, pixels and shares stay.
+// Lengths of a motion measured without a scale become NaN; angles, pixels and shares stay. A caveat says so.
 void forget_lengths(ChargeMotion& motion);
 
 }  // namespace tumble::analysis
