@@ -144,6 +144,11 @@ void calibrate(Options o) {
   check_mills(measured.list, mill, request.keys);
   std::vector<std::string> notes;
   add_priors(request.keys, measured, mill, notes);
+  const fs::path model = o.output / "model.toml", json = o.output / "calibration.json", page = o.output / "report.html",
+                 table = o.output / "runs.csv", journal_path = o.output / "runs.journal";
+  std::error_code error;
+  if (!o.resume && fs::is_directory(o.output, error))  // shows before films are measured, which takes long
+    for (const fs::path& file : {model, json, page, table}) io::check_output_file(file, o.force);
   for (Experiment& e : measured.list) fill_from_files(e, io::config_of(mill, e), o, notes);
   request.experiments = measured.list;
   std::size_t fitted = 0;
@@ -158,10 +163,7 @@ void calibrate(Options o) {
                     request.keys.size(), fitted, least, diagnose::default_simulations(request.keys.size(), fitted)));
 
   io::make_output_folder(o.output);
-  const fs::path model = o.output / "model.toml", json = o.output / "calibration.json", page = o.output / "report.html",
-                 table = o.output / "runs.csv", journal_path = o.output / "runs.journal";
   const std::string definition = definition_of(mill, request);
-  std::error_code error;
   if (o.resume && !o.force && fs::exists(json, error)) {
     const std::string said = io::read_text(json, "a calibration.json", kLargestJsonMiB);
     if (io::definition_in(said) != definition)

@@ -113,6 +113,8 @@ for bad in '' 'time_s,torque_N_m' $'time_s,torque_N_m\n0,1\n1,' $'time_s,torque_
   printf '%s\n' "$bad" >series.csv
   wrong 'J35: series.csv' 'torque_series = "series.csv"'
 done
+printf '[[experiment]]\nname = "film"\nfilm = "wrong.toml"\n' >film.toml
+refused 'one/model.toml: exists' calibrate "$mill" --fit contact.friction=0.1:0.5 --measured film.toml -o one  # before the film is read
 [ ! -e four ] || fail "a refused calibration left its folder"
 
 [ "$failures" -eq 0 ] && echo "campaigns are as promised"
