@@ -56,6 +56,33 @@ struct Losses {
 
 double& dissipated(RunningMill& mill, Cause cause) { return mill.ledger.dissipated[static_cast<std::size_t>(cause)]; }
 
+// The law of a touching pair, by its memory at `k` of the list.
+template <bool kPlain>
+Reaction feel(const ContactModel& law, const Touch& now, const Pairing& pair, double time_step, ContactList& list,
+              std::size_t k) {
+  const bool first = !list.touching[k];
+  list.touching[k] = 1;
+  if constexpr (kPlain)
+    return touch(law.springs, now, first, time_step, list.states[k]);
+  else
+    return touch(law, now, pair, first, time_step, list.states[k], list.terms[k]);
+}
+
+// The losses of the step in which the pair came apart. Its state is left for the count of impacts: `forget` comes next.
+template <bool kPlain>
+Reaction let_go(const ContactModel& law, const Touch& now, const Pairing& pair, ContactList& list, std::size_t k) {
+  if constexpr (kPlain)
+    return part(law.springs, now, list.states[k]);
+  else
+    return part(law, now, pair, list.states[k], list.terms[k]);
+}
+
+void forget(ContactList& list, std::size_t k) {
+  list.touching[k] = 0;
+  list.states[k] = {};
+  if (!list.terms.empty()) list.terms[k] = {};
+}
+
 template <bool kPlain>
 void ball_forces_by(RunningMill& mill) {
   const MillModel& m = mill.model;
@@ -77,7 +104,6 @@ void ball_forces_by(RunningMill& mill) {
     const std::size_t k = mill.close[q];
     const Contact& contact = list.contacts[k];
     const int i = contact.i, j = contact.j;
-    ContactState& state = list.states[k];
 
     const double dx = c.x[j] - c.x[i], dy = c.y[j] - c.y[i];
     const double d2 = dx * dx + dy * dy;
@@ -99,32 +125,21 @@ void ball_forces_by(RunningMill& mill) {
               (c.spin[j] - c.spin[i]) * dt};
 
     if (!(d2 < contact.reach * contact.reach)) {
-      if constexpr (kPlain) {
-        losses.add(part(m.ball.springs, now, state));
-      } else {
-        losses.add(part(m.ball, now, pair, state, list.terms[k]));
-        list.terms[k] = {};
-      }
+      losses.add(let_go<kPlain>(m.ball, now, pair, list, k));
+      const ContactState& state = list.states[k];
       if (mill.ledger.counting_impacts) mill.ledger.impacts.ball_ball.add(state.normal_lost, state.sliding_lost);
-      state = {};
-      list.touching[k] = 0;
+      forget(list, k);
       leave(mill, i);
       leave(mill, j);
       continue;
     }
     if (now.overlap > 0.5 * std::min(c.radius[i], c.radius[j]))
       overlap_too_large(mill, i, j, now.overlap, std::min(c.radius[i], c.radius[j]));
-    const bool first = !list.touching[k];
-    if (first) {
+    if (!list.touching[k]) {
       land(mill, i);
       land(mill, j);
     }
-    Reaction r;
-    if constexpr (kPlain)
-      r = touch(m.ball.springs, now, first, dt, state);
-    else
-      r = touch(m.ball, now, pair, first, dt, state, list.terms[k]);
-    list.touching[k] = 1;
+    const Reaction r = feel<kPlain>(m.ball, now, pair, dt, list, k);
     losses.add(r);
 
     const double fx = r.normal * nx - r.tangential * ny, fy = r.normal * ny + r.tangential * nx;  // on j
@@ -171,7 +186,6 @@ void wall_forces_by(RunningMill& mill) {
     const bool touches = distance < contact.reach;
     if (!touches && !list.touching[k]) continue;
 
-    ContactState& state = list.states[k];
     const double px = x + distance * nx, py = y + distance * ny;  // on the wall
     const double dvx = -speed_before * py - c.vx[i], dvy = speed_before * px - c.vy[i];
     Touch now;
@@ -184,30 +198,18 @@ void wall_forces_by(RunningMill& mill) {
     if constexpr (!kPlain) pair = {c.mass[i], c.radius[i], (speed_before - c.spin[i]) * dt};
 
     if (!touches) {
-      if constexpr (kPlain) {
-        losses.add(part(m.wall.springs, now, state));
-      } else {
-        losses.add(part(m.wall, now, pair, state, list.terms[k]));
-        list.terms[k] = {};
-      }
-      if (mill.ledger.counting_impacts) end_wall_impact(mill, contact.j, list.place[k], state);
-      state = {};
-      list.touching[k] = 0;
+      losses.add(let_go<kPlain>(m.wall, now, pair, list, k));
+      if (mill.ledger.counting_impacts) end_wall_impact(mill, contact.j, list.place[k], list.states[k]);
+      forget(list, k);
       leave(mill, i);
       continue;
     }
     if (now.overlap > 0.5 * contact.reach) overlap_too_large(mill, i, -1, now.overlap, contact.reach);
-    const bool first = !list.touching[k];
-    if (first) {
+    if (!list.touching[k]) {
       land(mill, i);
       list.place[k] = place_of(face, px, py);
     }
-    Reaction r;
-    if constexpr (kPlain)
-      r = touch(m.wall.springs, now, first, dt, state);
-    else
-      r = touch(m.wall, now, pair, first, dt, state, list.terms[k]);
-    list.touching[k] = 1;
+    const Reaction r = feel<kPlain>(m.wall, now, pair, dt, list, k);
     losses.add(r);
 
     const double sx = r.tangential * ny, sy = -r.tangential * nx;  // on the ball
