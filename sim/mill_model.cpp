@@ -8,6 +8,7 @@
 #include "core/effects.h"
 #include "core/error.h"
 #include "core/units.h"
+#include "sim/charge.h"
 #include "sim/effects/wall_friction.h"
 
 namespace tumble::sim {
@@ -46,13 +47,11 @@ ContactModel model_of(const Config& config, const Contact& contact, double frict
 }
 
 // The springs as stiff and as damped as they can become in this mill: what the time step must follow. A Hertzian
-// contact is stiffest where the heaviest ball comes in fastest, by falling through the mill and being met by the shell.
-LinearSpringDashpot stiffest(const ContactModel& model, const Config& config, double speed) {
+// contact is stiffest where the heaviest ball comes in fastest.
+LinearSpringDashpot stiffest(const ContactModel& model, const Config& config, double fastest) {
   LinearSpringDashpot s = model.springs;
   s.restitution *= 1 - model.restitution.drop;
   if (model.hertz.share == 0) return s;
-  const double radius = config.mill.diameter / 2;
-  const double fastest = 2 * std::sqrt(kGravity * radius) + speed * radius;
   double largest = 0, heaviest = 0;
   for (const BallClass& b : config.charge.balls) {
     largest = std::max(largest, b.radius);
@@ -70,7 +69,7 @@ double largest_time_step(const BodyEffects& body, const BallClass& ball, double 
   double per_mass = 0;
   for (const FluidDrag& fluid : {body.drag, body.pool.slurry})
     per_mass += std::max(fluid.per_velocity(ball.radius, fastest) / ball.mass,
-                         fluid.per_spin(ball.radius) / (0.4 * ball.mass * ball.radius * ball.radius));
+                         fluid.per_spin(ball.radius) / inertia(ball.mass, ball.radius));
   return 0.1 / per_mass;
 }
 
@@ -118,14 +117,15 @@ MillModel make_mill_model(const Config& config) {
                      "the mill stands still; revolutions can be simulated only at a speed above 0");
 
   double lightest = INFINITY, limit = INFINITY;
-  const double fastest = 2 * std::sqrt(kGravity * config.mill.diameter / 2) + model.speed * config.mill.diameter / 2;
+  // By falling through the mill and being met by the shell.
+  const double radius = config.mill.diameter / 2, fastest = 2 * std::sqrt(kGravity * radius) + model.speed * radius;
   for (std::size_t c = 0; c < counts.size(); ++c) {
     if (counts[c] == 0) continue;
     lightest = std::min(lightest, config.charge.balls[c].mass);
     limit = std::min(limit, largest_time_step(model.body, config.charge.balls[c], fastest));
   }
-  const LinearSpringDashpot between_balls = stiffest(model.ball, config, model.speed),
-                            at_wall = stiffest(model.wall, config, model.speed);
+  const LinearSpringDashpot between_balls = stiffest(model.ball, config, fastest),
+                            at_wall = stiffest(model.wall, config, fastest);
   limit = std::min({limit, largest_time_step(between_balls, lightest / 2), largest_time_step(at_wall, lightest)});
   double step = config.run.time_step;
   if (std::isnan(step)) {

@@ -85,6 +85,7 @@ BodyPush fluids(RunningMill& mill, std::size_t i) {
   Charge& c = mill.charge;
   const double r = c.radius[i];
   BodyPush push;
+  if (!body.drag.on() && !body.pool.on()) return push;
   push.vx = c.vx[i] + c.ax[i];
   push.vy = c.vy[i] + c.ay[i];
   push.spin = c.spin[i] + c.alpha[i];
