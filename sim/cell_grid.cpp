@@ -5,6 +5,8 @@
 
 namespace tumble::sim {
 
+constexpr std::size_t kRoom = 8;  // for reading several at a time
+
 int CellGrid::column(double x) const { return static_cast<int>((x - left_) * per_metre_); }
 int CellGrid::row(double y) const { return static_cast<int>((y - bottom_) * per_metre_); }
 
@@ -20,17 +22,26 @@ void CellGrid::fill(const Charge& charge, double cell) {
   columns_ = column(*x_high) + 1;
   rows_ = row(*y_high) + 1;
 
+  const std::size_t n = charge.size();
   start_.assign(static_cast<std::size_t>(columns_) * rows_ + 1, 0);
-  balls_.resize(charge.size());
-  for (std::size_t i = 0; i < charge.size(); ++i) ++start_[row(charge.y[i]) * columns_ + column(charge.x[i]) + 1];
+  cell_.resize(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    cell_[i] = row(charge.y[i]) * columns_ + column(charge.x[i]);
+    ++start_[static_cast<std::size_t>(cell_[i]) + 1];
+  }
   for (std::size_t c = 1; c < start_.size(); ++c) start_[c] += start_[c - 1];
-  for (std::size_t i = charge.size(); i-- > 0;) {  // from the back: start_ ends as each cell's end, then its beginning
-    const int c = row(charge.y[i]) * columns_ + column(charge.x[i]);
-    balls_[--start_[c + 1]] = static_cast<int>(i);
+  balls_.resize(n);
+  for (auto* v : {&x_, &y_, &radius_}) v->resize(n + kRoom);
+  for (std::size_t i = n; i-- > 0;) {  // from the back: start_ ends as each cell's end, then its beginning
+    const auto p = static_cast<std::size_t>(--start_[static_cast<std::size_t>(cell_[i]) + 1]);
+    balls_[p] = static_cast<int>(i);
+    x_[p] = charge.x[i];
+    y_[p] = charge.y[i];
+    radius_[p] = charge.radius[i];
   }
   // Now start_[c + 1] is where cell c begins; shift back to start_[c].
   for (std::size_t c = 0; c + 1 < start_.size(); ++c) start_[c] = start_[c + 1];
-  start_.back() = static_cast<int>(charge.size());
+  start_.back() = static_cast<int>(n);
 }
 
 void CellGrid::partners_of(const Charge& charge, int i, double skin, std::vector<int>& out) const {

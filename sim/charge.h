@@ -1,5 +1,7 @@
 #pragma once
+#include <array>
 #include <cstddef>
+#include <numeric>
 #include <vector>
 
 #include "core/frame.h"
@@ -16,21 +18,28 @@ struct Charge {
                                       // velocity at the positions' own time, v + a that foreseen for the next
   std::vector<double> radius, mass;   // [m], [kg]
   std::vector<double> half_step_per_mass, half_step_per_inertia;  // dt / 2m [s/kg], dt / 2I
-  std::vector<double> fx, fy, moment;  // sum of the forces [N] and of their moments about the centre [N m]
-  std::vector<double> pressure;        // sum of the normal forces |F_n| [N], where an effect asks for it
-  std::vector<double> end_x, end_y;    // springs against the end walls, in the mill's frame [m]
+  std::vector<double> end_x, end_y;  // springs against the end walls, in the mill's frame [m]
+  std::vector<int> id;               // number of the ball that is stored here
 
   std::size_t size() const { return x.size(); }
 };
+
+// What moves, and what stays as it is.
+inline std::array<std::vector<double>*, 11> moving_columns(Charge& c) {
+  return {&c.x, &c.y, &c.angle, &c.vx, &c.vy, &c.spin, &c.ax, &c.ay, &c.alpha, &c.end_x, &c.end_y};
+}
+inline std::array<std::vector<double>*, 4> constant_columns(Charge& c) {
+  return {&c.radius, &c.mass, &c.half_step_per_mass, &c.half_step_per_inertia};
+}
 
 // Balls at rest at the origin.
 inline Charge make_charge(const Balls& balls) {
   Charge c;
   c.radius = balls.radius;
   c.mass = balls.mass;
-  for (auto* v : {&c.x, &c.y, &c.angle, &c.vx, &c.vy, &c.spin, &c.ax, &c.ay, &c.alpha, &c.fx, &c.fy, &c.moment,
-                  &c.pressure, &c.end_x, &c.end_y})
-    v->assign(balls.size(), 0.0);
+  for (auto* v : moving_columns(c)) v->assign(balls.size(), 0.0);
+  c.id.resize(balls.size());
+  std::iota(c.id.begin(), c.id.end(), 0);
   return c;
 }
 

@@ -5,26 +5,135 @@
 #include <algorithm>
 #include <cmath>
 
-// Each loop reads gather, law, scatter, and exists twice: for the plain law, and for any law (`kPlain` false). The
-// scatter runs in the order of the list, as a sum per ball would.
+#include "sim/kernels/meeting.h"
+
+// Contacts that go on are worked out in blocks by the kernels; those that begin or end, few in a step, one by one.
 namespace tumble::sim {
 namespace {
 
-[[noreturn]] void overlap_too_large(const RunningMill& mill, int i, int j, double overlap, double radius) {
-  const std::string other = j < 0 ? std::string("the wall") : fmt::format("ball {}", j);
-  left_physics(mill, fmt::format("ball {} overlaps {} by {:.3g} mm, more than half a radius ({:.3g} mm)", i, other,
-                                 1e3 * overlap, 1e3 * radius / 2));
+// One kind of contacts at one step.
+struct Work {
+  const RunningMill& mill;
+  const ChargeView& balls;
+  Share& share;
+  Kind kind;
+  ContactStep step;
+  ShellPose pose;
+
+  bool plain() const { return mill.model.plain(); }
+  ContactTable& table() const { return share.touching[static_cast<std::size_t>(kind)]; }
+  NearPairs& near() const { return share.near[static_cast<std::size_t>(kind)]; }
+  ContactSums& sums() const { return kind == Kind::kBalls ? share.at_balls : share.at_wall; }
+};
+
+[[noreturn]] void too_deep(const Work& w, int i, int j) {
+  const Charge& c = w.mill.charge;
+  const auto a = static_cast<std::size_t>(i), b = static_cast<std::size_t>(j);
+  double radius = c.radius[a], overlap = 0;
+  std::string other = "the wall";
+  if (w.kind == Kind::kBalls) {
+    radius = std::min(radius, c.radius[b]);
+    overlap = c.radius[a] + c.radius[b] - std::hypot(c.x[b] - c.x[a], c.y[b] - c.y[a]);
+    other = fmt::format("ball {}", c.id[b]);
+  } else {
+    overlap = radius - nearest_on_wall(w.mill.model.shell, w.pose, j, c.x[a], c.y[a]).distance;
+  }
+  left_physics(w.mill, fmt::format("ball {} overlaps {} by {:.3g} mm, more than half a radius ({:.3g} mm)", c.id[a],
+                                   other, 1e3 * overlap, 1e3 * radius / 2));
 }
 
-// A flight ends with the first contact and begins with the loss of the last one.
-void land(RunningMill& mill, int i) {
-  if (mill.flights.contacts[i]++ > 0 || !mill.ledger.counting_impacts) return;
-  const double height = mill.flights.apex[i] - mill.charge.y[i];
-  const int bin = static_cast<int>(kFallBins * height / (2 * mill.model.shell.radius));
-  mill.ledger.impacts.falls[std::clamp(bin, 0, kFallBins - 1)] += 1;
+// The forces of a block, or of one contact, into the sums of the balls.
+template <bool kAtWall>
+void push(Share& s, const int* i, const int* j, int n, const Pushes& p) {
+  double *const fx = s.fx.data(), *const fy = s.fy.data(), *const moment = s.moment.data();
+  for (int k = 0; k < n; ++k) {
+    const int a = i[k] - s.window;
+    if constexpr (kAtWall) {
+      fx[a] += p.fx[k];
+      fy[a] += p.fy[k];
+      moment[a] += p.moment_i[k];
+    } else {
+      const int b = j[k] - s.window;
+      fx[a] -= p.fx[k];
+      fy[a] -= p.fy[k];
+      moment[a] += p.moment_i[k];
+      fx[b] += p.fx[k];
+      fy[b] += p.fy[k];
+      moment[b] += p.moment_j[k];
+    }
+  }
+  if (s.pressure.empty()) return;
+  for (int k = 0; k < n; ++k) {
+    s.pressure[static_cast<std::size_t>(i[k] - s.window)] += p.pressure[k];
+    if constexpr (!kAtWall) s.pressure[static_cast<std::size_t>(j[k] - s.window)] += p.pressure[k];
+  }
 }
-void leave(RunningMill& mill, int i) {
-  if (--mill.flights.contacts[i] == 0) mill.flights.apex[i] = mill.charge.y[i];
+void push(const Work& w, const int* i, const int* j, int n, const Pushes& p) {
+  w.kind == Kind::kBalls ? push<false>(w.share, i, j, n, p) : push<true>(w.share, i, j, n, p);
+}
+
+void push(const Work& w, int i, int j, const Push<double>& p) {
+  Pushes one;
+  one.fx[0] = p.fx;
+  one.fy[0] = p.fy;
+  one.moment_i[0] = p.moment_i;
+  one.moment_j[0] = p.moment_j;
+  one.pressure[0] = p.pressure;
+  push(w, &i, &j, 1, one);
+  w.sums().add({p.normal_loss, p.sliding_loss, p.rolling_loss, p.torque, p.torque_shear});
+}
+
+// Contacts that touched at the last step. Those that do no more are left, with their memory, in `parted`.
+void go_on(const Work& w) {
+  ContactTable& table = w.table();
+  const ContactColumns columns = columns_of(table);
+  const Kernels& kernels = *w.mill.kernels;
+  w.share.parted.clear();
+  Pushes out;
+  WallPoints points;
+  for (int k = 0; k < table.size(); k += kBlock) {
+    const int end = std::min(k + kBlock, table.size());
+    out.parted = out.too_deep = 0;
+    if (w.kind == Kind::kBalls) {
+      kernels.balls(w.step, columns, k, end, out, w.sums());
+    } else if (w.kind == Kind::kPlate) {
+      kernels.plate(w.step, columns, k, end, out, w.sums());
+    } else {
+      for (int b = 0; b < end - k && w.step.lifters->faces == 0; ++b) {
+        const int i = columns.i[k + b];
+        const WallPoint p = nearest_on_wall(w.mill.model.shell, w.pose, columns.j[k + b], w.balls.x[i], w.balls.y[i]);
+        points.distance[b] = p.distance;
+        points.nx[b] = p.nx;
+        points.ny[b] = p.ny;
+      }
+      kernels.lifters(w.step, columns, k, end, points, out, w.sums());
+    }
+    if (out.too_deep != 0) {
+      const int b = k + __builtin_ctzll(out.too_deep);
+      too_deep(w, columns.i[b], columns.j[b]);
+    }
+    push(w, columns.i + k, columns.j + k, end - k, out);
+    for (std::uint64_t bits = out.parted; bits != 0; bits &= bits - 1)
+      w.share.parted.push_back(k + __builtin_ctzll(bits));
+  }
+}
+
+template <bool kPlain>
+Meeting<double> meet(const Work& w, int i, int j, WallPoint& at) {
+  if (w.kind == Kind::kBalls) return balls_meet<double, kPlain>(w.balls, &i, &j, w.step.time_step);
+  at = nearest_on_wall(w.mill.model.shell, w.pose, j, w.balls.x[i], w.balls.y[i]);
+  return wall_meets<double, kPlain>(w.balls, &i, w.step.wall, at.distance, at.nx, at.ny, w.step.time_step);
+}
+Meeting<double> meet(const Work& w, int i, int j, WallPoint& at) {
+  Meeting<double> m = w.plain() ? meet<true>(w, i, j, at) : meet<false>(w, i, j, at);
+  const double* mass = w.balls.mass;
+  m.pair.effective_mass = w.kind == Kind::kBalls ? mass[i] * mass[j] / (mass[i] + mass[j]) : mass[i];
+  m.now.damping = w.mill.damping[w.kind != Kind::kBalls].of(m.pair.effective_mass);
+  return m;
+}
+
+Push<double> push_of(const Work& w, const Meeting<double>& m, const Reaction& r) {
+  return w.kind == Kind::kBalls ? push_of_balls(m, r, w.mill.exact) : push_of_wall(m, r, w.mill.exact);
 }
 
 std::uint16_t place_of(Face face, double px, double py) {
@@ -33,209 +142,153 @@ std::uint16_t place_of(Face face, double px, double py) {
   return static_cast<std::uint16_t>(static_cast<int>(face) * kAngleBins + bin);
 }
 
-void end_wall_impact(RunningMill& mill, int feature, std::size_t place, const ContactState& state) {
+void begin(const Work& w, int i, int j) {
+  WallPoint at;
+  const Meeting<double> m = meet(w, i, j, at);
+  if (m.too_deep) too_deep(w, i, j);
+  Contact contact{.i = i, .j = j, .damping = m.now.damping, .state = {}, .terms = {}, .place = 0};
+  Reaction r;
+  if (w.plain()) {
+    r = touch(w.step.law->springs, m.now, true, w.step.time_step, contact.state);
+  } else {
+    contact.terms.damping = damping_from(*w.step.law, m.now, m.pair, w.step.time_step);
+    r = touch(*w.step.law, m.now, m.pair, true, w.step.time_step, contact.state, contact.terms);
+  }
+  if (w.kind != Kind::kBalls) contact.place = place_of(at.face, m.px, m.py);
+  add(w.table(), contact, w.kind, w.plain());
+  push(w, i, j, push_of(w, m, r));
+  w.share.begun.push_back({i, w.kind == Kind::kBalls ? j : -1});
+}
+
+// Near pairs that touch now, of the tiers that can.
+void begin_new(const Work& w) {
+  const Kernels& kernels = *w.mill.kernels;
+  const Shell& shell = w.mill.model.shell;
+  NearPairs& near = w.near();
+  std::vector<int>& hits = w.share.hits;
+  const int due = near.due(2 * w.mill.moved);
+  for (int t = 0; t < due; ++t) {
+    NearPairs::Tier& tier = near.tiers[static_cast<std::size_t>(t)];
+    hits.resize(std::max(hits.size(), tier.i.size() + kMostLanes));
+    int found = 0;
+    if (w.kind == Kind::kBalls) {
+      found = kernels.touching_pairs(w.balls, tier.i.data(), tier.j.data(), tier.count, hits.data());
+    } else if (w.kind == Kind::kPlate) {
+      found = kernels.touching_plate(w.balls, shell.radius, tier.i.data(), tier.count, hits.data());
+    } else if (w.step.lifters->faces > 0) {
+      found = kernels.touching_lifters(w.balls, *w.step.lifters, tier.i.data(), tier.j.data(), tier.count, hits.data());
+    } else {
+      for (int k = 0; k < tier.count; ++k) {
+        const int i = tier.i[k];
+        const double x = w.balls.x[i], y = w.balls.y[i], radius = w.balls.radius[i];
+        if (may_touch(shell, w.pose, tier.j[k], x, y, radius) &&
+            nearest_on_wall(shell, w.pose, tier.j[k], x, y).distance < radius)
+          hits[found++] = k;
+      }
+    }
+    while (found-- > 0) {  // from the back: the last of the tier fills the gap
+      const int k = hits[found];
+      begin(w, tier.i[k], tier.j[k]);
+      tier.remove(k);
+    }
+  }
+}
+
+void end_parted(const Work& w) {
+  ContactTable& table = w.table();
+  std::vector<int>& parted = w.share.parted;
+  for (auto k = parted.rbegin(); k != parted.rend(); ++k) {
+    Contact c = contact_at(table, *k);
+    WallPoint at;
+    const Meeting<double> m = meet(w, c.i, c.j, at);
+    const Reaction r =
+        w.plain() ? part(w.step.law->springs, m.now, c.state) : part(*w.step.law, m.now, m.pair, c.state, c.terms);
+    const ExactSum& exact = w.mill.exact.loss;
+    w.sums().add({exact(r.normal_loss), exact(r.sliding_loss), exact(r.rolling_loss), 0, 0});
+    const bool wall = w.kind != Kind::kBalls;
+    w.share.ended.push_back({c.i, wall ? -1 : c.j, wall ? c.j : 0, c.place, c.state.normal_lost, c.state.sliding_lost});
+    remove(table, *k);
+    w.near().add(c.i, c.j, 0);
+  }
+}
+
+void contacts(const Work& w) {
+  go_on(w);
+  begin_new(w);
+  end_parted(w);
+}
+
+// A flight ends with the first contact and begins with the loss of the last one.
+void land(RunningMill& mill, int ball) {
+  const auto i = static_cast<std::size_t>(ball);
+  if (mill.flights.contacts[i]++ > 0 || !mill.ledger.counting_impacts) return;
+  const double height = mill.flights.apex[i] - mill.charge.y[i];
+  const int bin = static_cast<int>(kFallBins * height / (2 * mill.model.shell.radius));
+  mill.ledger.impacts.falls[static_cast<std::size_t>(std::clamp(bin, 0, kFallBins - 1))] += 1;
+}
+void leave(RunningMill& mill, int ball) {
+  const auto i = static_cast<std::size_t>(ball);
+  if (--mill.flights.contacts[i] == 0) mill.flights.apex[i] = mill.charge.y[i];
+}
+
+void count_impact(RunningMill& mill, const Ended& e) {
   Impacts& impacts = mill.ledger.impacts;
-  const double lost = state.normal_lost + state.sliding_lost;
-  impacts.ball_wall.add(state.normal_lost, state.sliding_lost);
-  impacts.wall_number[place] += 1;
-  impacts.wall_energy[place] += lost;
-  if (feature == 0) return;
-  const auto lifter = static_cast<std::size_t>(lifter_of(mill.model.shell, feature));
+  if (e.j >= 0) {
+    impacts.ball_ball.add(e.normal_lost, e.sliding_lost);
+    return;
+  }
+  const double lost = e.normal_lost + e.sliding_lost;
+  impacts.ball_wall.add(e.normal_lost, e.sliding_lost);
+  impacts.wall_number[e.place] += 1;
+  impacts.wall_energy[e.place] += lost;
+  if (e.feature == 0) return;
+  const auto lifter = static_cast<std::size_t>(lifter_of(mill.model.shell, e.feature));
   impacts.lifter_number[lifter] += 1;
   impacts.lifter_energy[lifter] += lost;
 }
 
-struct Losses {
-  double normal = 0, sliding = 0, rolling = 0;
-  void add(const Reaction& r) {
-    normal += r.normal_loss;
-    sliding += r.sliding_loss;
-    rolling += r.rolling_loss;
-  }
-};
-
-double& dissipated(RunningMill& mill, Cause cause) { return mill.ledger.dissipated[static_cast<std::size_t>(cause)]; }
-
-// The law of a touching pair, by its memory at `k` of the list.
-template <bool kPlain>
-Reaction feel(const ContactModel& law, const Touch& now, const Pairing& pair, double time_step, ContactList& list,
-              std::size_t k) {
-  const bool first = !list.touching[k];
-  list.touching[k] = 1;
-  if constexpr (kPlain)
-    return touch(law.springs, now, first, time_step, list.states[k]);
-  else
-    return touch(law, now, pair, first, time_step, list.states[k], list.terms[k]);
-}
-
-// The losses of the step in which the pair came apart. Its state is left for the count of impacts: `forget` comes next.
-template <bool kPlain>
-Reaction let_go(const ContactModel& law, const Touch& now, const Pairing& pair, ContactList& list, std::size_t k) {
-  if constexpr (kPlain)
-    return part(law.springs, now, list.states[k]);
-  else
-    return part(law, now, pair, list.states[k], list.terms[k]);
-}
-
-void forget(ContactList& list, std::size_t k) {
-  list.touching[k] = 0;
-  list.states[k] = {};
-  if (!list.terms.empty()) list.terms[k] = {};
-}
-
-template <bool kPlain>
-void ball_forces_by(RunningMill& mill) {
-  const MillModel& m = mill.model;
-  const double dt = m.time_step;
-  Charge& c = mill.charge;
-  ContactList& list = mill.ball_contacts;
-
-  std::size_t close = 0;
-  for (std::size_t k = 0; k < list.size(); ++k) {
-    const Contact& contact = list.contacts[k];
-    const double dx = c.x[contact.j] - c.x[contact.i], dy = c.y[contact.j] - c.y[contact.i];
-    mill.close[close] = static_cast<std::uint32_t>(k);
-    close += static_cast<std::size_t>((dx * dx + dy * dy < contact.reach * contact.reach) | list.touching[k]);
-  }
-
-  Losses losses{dissipated(mill, Cause::kBallBallNormal), dissipated(mill, Cause::kBallBallSliding),
-                dissipated(mill, Cause::kRolling)};
-  for (std::size_t q = 0; q < close; ++q) {
-    const std::size_t k = mill.close[q];
-    const Contact& contact = list.contacts[k];
-    const int i = contact.i, j = contact.j;
-
-    const double dx = c.x[j] - c.x[i], dy = c.y[j] - c.y[i];
-    const double d2 = dx * dx + dy * dy;
-    const double d = std::sqrt(d2);
-    const double nx = dx / d, ny = dy / d;
-    const double dvx = c.vx[j] - c.vx[i], dvy = c.vy[j] - c.vy[i];
-    const double dax = c.ax[j] - c.ax[i], day = c.ay[j] - c.ay[i];
-    Touch now;
-    now.overlap = contact.reach - d;
-    now.approach = -(dvx * nx + dvy * ny) * dt;
-    now.closing = -((dvx + dax) * nx + (dvy + day) * ny);
-    now.damping = contact.damping;
-    // The contact lies half the overlap inside either ball.
-    const double arm_i = c.radius[i] - 0.5 * now.overlap, arm_j = c.radius[j] - 0.5 * now.overlap;
-    now.slide = (dvy * nx - dvx * ny - (arm_i * c.spin[i] + arm_j * c.spin[j])) * dt;
-    Pairing pair;
-    if constexpr (!kPlain)
-      pair = {c.mass[i] * c.mass[j] / (c.mass[i] + c.mass[j]), c.radius[i] * c.radius[j] / contact.reach,
-              (c.spin[j] - c.spin[i]) * dt};
-
-    if (!(d2 < contact.reach * contact.reach)) {
-      losses.add(let_go<kPlain>(m.ball, now, pair, list, k));
-      const ContactState& state = list.states[k];
-      if (mill.ledger.counting_impacts) mill.ledger.impacts.ball_ball.add(state.normal_lost, state.sliding_lost);
-      forget(list, k);
-      leave(mill, i);
-      leave(mill, j);
-      continue;
-    }
-    if (now.overlap > 0.5 * std::min(c.radius[i], c.radius[j]))
-      overlap_too_large(mill, i, j, now.overlap, std::min(c.radius[i], c.radius[j]));
-    if (!list.touching[k]) {
-      land(mill, i);
-      land(mill, j);
-    }
-    const Reaction r = feel<kPlain>(m.ball, now, pair, dt, list, k);
-    losses.add(r);
-
-    const double fx = r.normal * nx - r.tangential * ny, fy = r.normal * ny + r.tangential * nx;  // on j
-    c.fx[i] -= fx;
-    c.fy[i] -= fy;
-    c.moment[i] -= arm_i * r.tangential;
-    c.fx[j] += fx;
-    c.fy[j] += fy;
-    c.moment[j] -= arm_j * r.tangential;
-    if constexpr (!kPlain) {
-      c.moment[i] -= r.couple;
-      c.moment[j] += r.couple;
-      if (m.body.ends.pressure != 0) {
-        c.pressure[i] += std::abs(r.normal);
-        c.pressure[j] += std::abs(r.normal);
-      }
-    }
-  }
-  dissipated(mill, Cause::kBallBallNormal) = losses.normal;
-  dissipated(mill, Cause::kBallBallSliding) = losses.sliding;
-  dissipated(mill, Cause::kRolling) = losses.rolling;
-}
-
-// The wall's point moves with Omega x p; its forces on the balls have the moment that drives the mill.
-template <bool kPlain>
-void wall_forces_by(RunningMill& mill) {
-  const MillModel& m = mill.model;
-  const Shell& shell = m.shell;
-  const double dt = m.time_step, speed = mill_speed(m, mill.step);
-  const double speed_before = mill_speed_before(m, mill.step), faster = speed - speed_before;
-  Charge& c = mill.charge;
-  ContactList& list = mill.wall_contacts;
-  const ShellPose pose = pose_of(mill_angle(m, mill.step));
-
-  Losses losses{dissipated(mill, Cause::kBallWallNormal), dissipated(mill, Cause::kBallWallSliding),
-                dissipated(mill, Cause::kRolling)};
-  double torque = 0, torque_shear = 0;
-  for (std::size_t k = 0; k < list.size(); ++k) {
-    const Contact& contact = list.contacts[k];
-    const int i = contact.i;
-    const double x = c.x[i], y = c.y[i];
-    if (!list.touching[k] && !may_touch(shell, pose, contact.j, x, y, contact.reach)) continue;
-    const auto [distance, nx, ny, face] = nearest_on_wall(shell, pose, contact.j, x, y);
-    const bool touches = distance < contact.reach;
-    if (!touches && !list.touching[k]) continue;
-
-    const double px = x + distance * nx, py = y + distance * ny;  // on the wall
-    const double dvx = -speed_before * py - c.vx[i], dvy = speed_before * px - c.vy[i];
-    Touch now;
-    now.overlap = contact.reach - distance;
-    now.approach = -(dvx * nx + dvy * ny) * dt;
-    now.closing = -((dvx - faster * py - c.ax[i]) * nx + (dvy + faster * px - c.ay[i]) * ny);
-    now.damping = contact.damping;
-    now.slide = (dvy * nx - dvx * ny - distance * c.spin[i]) * dt;
-    Pairing pair;
-    if constexpr (!kPlain) pair = {c.mass[i], c.radius[i], (speed_before - c.spin[i]) * dt};
-
-    if (!touches) {
-      losses.add(let_go<kPlain>(m.wall, now, pair, list, k));
-      if (mill.ledger.counting_impacts) end_wall_impact(mill, contact.j, list.place[k], list.states[k]);
-      forget(list, k);
-      leave(mill, i);
-      continue;
-    }
-    if (now.overlap > 0.5 * contact.reach) overlap_too_large(mill, i, -1, now.overlap, contact.reach);
-    if (!list.touching[k]) {
-      land(mill, i);
-      list.place[k] = place_of(face, px, py);
-    }
-    const Reaction r = feel<kPlain>(m.wall, now, pair, dt, list, k);
-    losses.add(r);
-
-    const double sx = r.tangential * ny, sy = -r.tangential * nx;  // on the ball
-    const double fx = sx - r.normal * nx, fy = sy - r.normal * ny;
-    c.fx[i] += fx;
-    c.fy[i] += fy;
-    c.moment[i] -= distance * r.tangential;
-    torque += px * fy - py * fx;
-    torque_shear += px * sy - py * sx;
-    if constexpr (!kPlain) {
-      c.moment[i] -= r.couple;
-      torque -= r.couple;
-      if (m.body.ends.pressure != 0) c.pressure[i] += std::abs(r.normal);
-    }
-  }
-  dissipated(mill, Cause::kBallWallNormal) = losses.normal;
-  dissipated(mill, Cause::kBallWallSliding) = losses.sliding;
-  dissipated(mill, Cause::kRolling) = losses.rolling;
-  mill.ledger.torque += torque;
-  mill.ledger.torque_shear += torque_shear;
-  mill.ledger.drive_work += torque * speed * dt;
-}
-
 }  // namespace
 
-void ball_forces(RunningMill& mill) { mill.model.plain() ? ball_forces_by<true>(mill) : ball_forces_by<false>(mill); }
-void wall_forces(RunningMill& mill) { mill.model.plain() ? wall_forces_by<true>(mill) : wall_forces_by<false>(mill); }
+void contact_forces(const RunningMill& mill, const ChargeView& balls, Share& share) {
+  const MillModel& m = mill.model;
+  share.at_balls = share.at_wall = {};
+  share.begun.clear();
+  share.ended.clear();
+  const ShellPose pose = pose_of(mill_angle(m, mill.step));
+  const double speed = mill_speed(m, mill.step), speed_before = mill_speed_before(m, mill.step);
+  const ContactStep between{&m.ball, &balls, &mill.exact, m.time_step, {}, nullptr};
+  const ContactStep at_wall{
+      &m.wall, &balls, &mill.exact, m.time_step, {m.shell.radius, speed_before, speed - speed_before}, &mill.lifters};
+  contacts({mill, balls, share, Kind::kBalls, between, pose});
+  contacts({mill, balls, share, Kind::kPlate, at_wall, pose});
+  contacts({mill, balls, share, Kind::kLifters, at_wall, pose});
+}
+
+void book_events(RunningMill& mill) {
+  // What begins comes first: a ball that passes from one contact to another does not fly.
+  for (const Share& share : mill.shares)
+    for (const Begun& b : share.begun) {
+      land(mill, b.i);
+      if (b.j >= 0) land(mill, b.j);
+    }
+  std::vector<Ended>& at_wall = mill.ended_at_wall;
+  at_wall.clear();
+  for (const Share& share : mill.shares)
+    for (const Ended& e : share.ended) {
+      leave(mill, e.i);
+      if (e.j >= 0) leave(mill, e.j);
+      if (!mill.ledger.counting_impacts) continue;
+      if (e.j >= 0)
+        count_impact(mill, e);
+      else
+        at_wall.push_back(e);
+    }
+  // Energies are summed up over the whole run, in an order that does not hang on how the balls are stored.
+  std::sort(at_wall.begin(), at_wall.end(), [&](const Ended& a, const Ended& b) {
+    const int ia = mill.charge.id[static_cast<std::size_t>(a.i)], ib = mill.charge.id[static_cast<std::size_t>(b.i)];
+    return ia != ib ? ia < ib : a.feature < b.feature;
+  });
+  for (const Ended& e : at_wall) count_impact(mill, e);
+}
 
 }  // namespace tumble::sim

@@ -3,10 +3,11 @@
 
 namespace tumble::sim {
 
-// Forces between balls, and of shell and lifters on the balls, at the mill's present step: into charge.fx, fy, moment;
-// losses, torque and ended impacts into the ledger. The near lists are fresh. Throws WorkError where two bodies overlap
-// by more than half a radius.
-void ball_forces(RunningMill& mill);
-void wall_forces(RunningMill& mill);
+// Contacts of a share at the balls' present positions: their forces into the share's window, their losses into its
+// sums, and what has begun and ended. Throws WorkError where bodies overlap by more than half a radius.
+void contact_forces(const RunningMill& mill, const ChargeView& balls, Share& share);
+
+// Books what began and ended in all shares: impacts and falls.
+void book_events(RunningMill& mill);
 
 }  // namespace tumble::sim

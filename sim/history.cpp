@@ -22,11 +22,12 @@ void look_for_locked_balls(const RunningMill& mill, LockedBalls& locked) {
   locked.count = 0;
   for (std::size_t i = 0; i < c.size(); ++i) {
     const double in_mill = std::atan2(c.y[i], c.x[i]) - angle;
-    if (!(std::abs(std::remainder(in_mill - locked.home[i], 2 * kPi)) < tolerance)) {
-      locked.home[i] = in_mill;
-      locked.since[i] = angle;
+    const auto number = static_cast<std::size_t>(c.id[i]);
+    if (!(std::abs(std::remainder(in_mill - locked.home[number], 2 * kPi)) < tolerance)) {
+      locked.home[number] = in_mill;
+      locked.since[number] = angle;
     }
-    if (angle - locked.since[i] > 2 * kPi) ++locked.count;
+    if (angle - locked.since[number] > 2 * kPi) ++locked.count;
   }
 }
 

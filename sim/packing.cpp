@@ -8,6 +8,7 @@
 #include "core/error.h"
 #include "core/random.h"
 #include "core/units.h"
+#include "sim/ball_order.h"
 #include "sim/running_mill.h"
 
 namespace tumble::sim {
@@ -55,16 +56,16 @@ double clear_of_walls(const Shell& shell, Charge& c, int i, double radius) {
     c.x[i] *= inward;
     c.y[i] *= inward;
   }
-  std::vector<int> near;
-  features_near(shell, 0.0, c.x[i], c.y[i], radius, near);
+  std::vector<NearFeature> near;
+  features_near(shell, ShellPose{}, c.x[i], c.y[i], radius, near);
   // Deep in a lifter, only the shortest way out counts.
   const int around = lifter_around(shell, c.x[i], c.y[i]);
   if (around >= 0) {
     near.clear();
     for (int feature = 1; feature < feature_count(shell); ++feature)
-      if (lifter_of(shell, feature) == around) near.push_back(feature);
+      if (lifter_of(shell, feature) == around) near.push_back({feature, 0});
   }
-  for (const int feature : near) {
+  for (const auto& [feature, ignored] : near) {
     if (feature == 0) continue;
     const WallPoint n = nearest_on_wall(shell, ShellPose{}, feature, c.x[i], c.y[i]);
     const double inside = radius - n.distance;
@@ -199,6 +200,7 @@ Charge settle(const MillModel& model, Charge charge, const Progress& progress) {
     }
     if (energies_of(mill).kinetic < 1e-2 * scale) break;
   }
+  sort_by_number(mill);
   for (auto* v : {&mill.charge.vx, &mill.charge.vy, &mill.charge.spin, &mill.charge.angle})
     std::fill(v->begin(), v->end(), 0.0);
   return mill.charge;

@@ -4,6 +4,7 @@
 #include "sim/charge.h"
 #include "sim/ledger.h"
 #include "sim/mill_model.h"
+#include "sim/running_mill.h"
 
 namespace tumble::sim {
 
@@ -12,6 +13,7 @@ namespace tumble::sim {
 // bits.
 struct ReferenceMill {
   MillModel model;
+  ExactSums exact;
   Charge charge;
   Ledger ledger;  // drive work, dissipation, torque sums; no impacts
   std::int64_t step = 0;

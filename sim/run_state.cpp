@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/error.h"
+#include "sim/ball_order.h"
 
 namespace tumble::sim {
 namespace {
@@ -20,7 +21,7 @@ constexpr std::size_t kOtherWords = 64 + 64 * kWordsPerContact + 6 * kBins + 2 *
 struct Writer {
   std::vector<double> words;
   void operator()(double& value) { words.push_back(value); }
-  void operator()(std::int64_t& value) { words.push_back(std::bit_cast<double>(value)); }
+  void operator()(const std::int64_t& value) { words.push_back(std::bit_cast<double>(value)); }
   void operator()(std::vector<double>& values) {
     auto n = static_cast<std::int64_t>(values.size());
     (*this)(n);
@@ -67,7 +68,7 @@ void visit(Archive& archive, Sums& sums) {
 template <class Archive>
 void visit(Archive& archive, RunState& run) {
   Charge& c = run.mill.charge;
-  for (auto* v : {&c.x, &c.y, &c.angle, &c.vx, &c.vy, &c.spin, &c.ax, &c.ay, &c.alpha, &c.end_x, &c.end_y}) archive(*v);
+  for (auto* v : moving_columns(c)) archive(*v);
   archive(run.mill.flights.apex);
   archive(run.mill.step);
   archive(run.mill.fastest);
@@ -103,76 +104,67 @@ std::array<double*, 5> words_in(ContactState& s) {
 }
 std::array<double*, 4> words_in(TermState& t) { return {&t.force, &t.stored, &t.damping, &t.roll}; }
 
-void write_touching(Writer& writer, const ContactList& list) {
-  std::int64_t touching = 0;
-  for (const std::uint8_t t : list.touching) touching += t;
-  writer(touching);
-  for (std::size_t k = 0; k < list.size(); ++k) {
-    if (!list.touching[k]) continue;
-    std::int64_t i = list.contacts[k].i, j = list.contacts[k].j;
-    std::int64_t place = list.place.empty() ? 0 : list.place[k];
-    ContactState s = list.states[k];
-    TermState t = list.terms.empty() ? TermState{} : list.terms[k];
-    for (std::int64_t* v : {&i, &j, &place}) writer(*v);
-    for (double* v : words_in(s)) writer(*v);
-    for (double* v : words_in(t)) writer(*v);
+void write_contacts(Writer& writer, const RunningMill& mill, Kind kind) {
+  const std::vector<Contact> contacts = contacts_of(mill, kind);
+  writer(static_cast<std::int64_t>(contacts.size()));
+  for (Contact c : contacts) {
+    for (const std::int64_t v : {c.i, c.j, int{c.place}}) writer(v);
+    for (double* v : words_in(c.state)) writer(*v);
+    for (double* v : words_in(c.terms)) writer(*v);
   }
 }
 
-// Reach and damping come with the first renewal, as for any contact.
-void read_touching(Reader& reader, ContactList& list, std::int64_t balls) {
-  list = {};
-  std::int64_t touching = 0;
-  reader(touching);
-  for (std::int64_t k = 0; k < touching; ++k) {
+void read_contacts(Reader& reader, RunningMill& mill, Kind kind) {
+  const Charge& charge = mill.charge;
+  const auto balls = static_cast<std::int64_t>(charge.size());
+  const std::int64_t others = kind == Kind::kBalls ? balls : feature_count(mill.model.shell);
+  std::int64_t contacts = 0;
+  reader(contacts);
+  for (std::int64_t k = 0; k < contacts; ++k) {
     std::int64_t i = 0, j = 0, place = 0;
-    ContactState s;
-    TermState t;
+    Contact c;
     for (std::int64_t* v : {&i, &j, &place}) reader(*v);
-    for (double* v : words_in(s)) reader(*v);
-    for (double* v : words_in(t)) reader(*v);
-    if (i < 0 || i >= balls || j < 0 || place < 0 || place >= kPlaces)
+    for (double* v : words_in(c.state)) reader(*v);
+    for (double* v : words_in(c.terms)) reader(*v);
+    if (i < 0 || i >= balls || j < 0 || j >= others || place < 0 || place >= kPlaces)
       throw InputError("checkpoint", "is damaged; start afresh");
-    list.contacts.push_back({static_cast<int>(i), static_cast<int>(j), 0, 0});
-    list.touching.push_back(1);
-    list.states.push_back(s);
-    list.terms.push_back(t);
-    list.place.push_back(static_cast<std::uint16_t>(place));
+    c.i = static_cast<int>(i);
+    c.j = static_cast<int>(j);
+    c.place = static_cast<std::uint16_t>(place);
+    const double mass = charge.mass[static_cast<std::size_t>(i)];
+    if (kind == Kind::kBalls) {
+      const double other = charge.mass[static_cast<std::size_t>(j)];
+      c.damping = mill.damping[0].of(mass * other / (mass + other));
+    } else {
+      c.damping = mill.damping[1].of(mass);
+    }
+    add(mill.shares[0].touching[static_cast<std::size_t>(kind)], c, kind, mill.model.plain());
+    ++mill.flights.contacts[static_cast<std::size_t>(i)];
+    if (kind == Kind::kBalls) ++mill.flights.contacts[static_cast<std::size_t>(j)];
   }
 }
 
-// How many contacts each ball has is not kept: it follows from those that touch.
-void count_contacts(RunningMill& mill) {
-  std::vector<int>& contacts = mill.flights.contacts;
-  std::fill(contacts.begin(), contacts.end(), 0);
-  for (const Contact& c : mill.wall_contacts.contacts) ++contacts[c.i];
-  for (const Contact& c : mill.ball_contacts.contacts) {
-    if (c.j >= static_cast<int>(contacts.size())) throw InputError("checkpoint", "is damaged; start afresh");
-    ++contacts[c.i];
-    ++contacts[c.j];
-  }
-}
+constexpr Kind kAllKinds[] = {Kind::kBalls, Kind::kPlate, Kind::kLifters};
 
 }  // namespace
 
 std::vector<double> words_of(const RunState& run) {
   Writer writer;
   RunState copy = run;  // `visit` is written for both directions and wants to change what it sees
+  sort_by_number(copy.mill);
   visit(writer, copy);
-  write_touching(writer, run.mill.ball_contacts);
-  write_touching(writer, run.mill.wall_contacts);
+  for (const Kind kind : kAllKinds) write_contacts(writer, run.mill, kind);
   return std::move(writer.words);
 }
 
 void restore(RunState& run, const std::vector<double>& words) {
   const std::size_t balls = run.mill.charge.size();
+  sort_by_number(run.mill);
   Reader reader{words};
   visit(reader, run);
-  const Charge& c = run.mill.charge;
-  for (const std::vector<double>* v : {&c.x, &c.y, &c.angle, &c.vx, &c.vy, &c.spin, &c.ax, &c.ay, &c.alpha, &c.end_x,
-                                       &c.end_y, &std::as_const(run.mill.flights.apex)})
-    if (v->size() != balls)
-      throw InputError("checkpoint", "holds another number of balls than the config; start afresh");
+  bool fits = run.mill.flights.apex.size() == balls;
+  for (const std::vector<double>* v : moving_columns(run.mill.charge)) fits = fits && v->size() == balls;
+  if (!fits) throw InputError("checkpoint", "holds another number of balls than the config; start afresh");
   const Impacts& impacts = run.mill.ledger.impacts;
   const auto lifters = static_cast<std::size_t>(run.mill.model.shell.lifter_count);
   const History& h = run.history;
@@ -181,9 +173,10 @@ void restore(RunState& run, const std::vector<double>& words) {
       impacts.lifter_number.size() != lifters || impacts.lifter_energy.size() != lifters ||
       static_cast<std::size_t>(run.sampled_before) > h.size())
     throw InputError("checkpoint", "is damaged; start afresh");
-  read_touching(reader, run.mill.ball_contacts, static_cast<std::int64_t>(balls));
-  read_touching(reader, run.mill.wall_contacts, static_cast<std::int64_t>(balls));
-  count_contacts(run.mill);
+  // How many contacts each ball has is not kept: it follows from the contacts.
+  std::fill(run.mill.flights.contacts.begin(), run.mill.flights.contacts.end(), 0);
+  for (Share& share : run.mill.shares) share.touching = {};
+  for (const Kind kind : kAllKinds) read_contacts(reader, run.mill, kind);
   run.mill.stale = true;
 }
 

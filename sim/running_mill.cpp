@@ -4,9 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <utility>
 
 #include "core/error.h"
+#include "core/parallel_for.h"
 #include "sim/contact_forces.h"
+#include "sim/near_search.h"
 
 namespace tumble::sim {
 void left_physics(const RunningMill& mill, const std::string& what) {
@@ -18,153 +22,161 @@ void left_physics(const RunningMill& mill, const std::string& what) {
 
 namespace {
 
-void drift(RunningMill& mill) {
+ChargeView view_of(RunningMill& mill) {
   Charge& c = mill.charge;
-  const double dt = mill.model.time_step;
-  for (std::size_t i = 0; i < c.size(); ++i) {
-    c.x[i] += c.vx[i] * dt;
-    c.y[i] += c.vy[i] * dt;
-    c.angle[i] += c.spin[i] * dt;
-  }
+  return {c.x.data(),
+          c.y.data(),
+          c.angle.data(),
+          c.vx.data(),
+          c.vy.data(),
+          c.spin.data(),
+          c.ax.data(),
+          c.ay.data(),
+          c.alpha.data(),
+          c.radius.data(),
+          c.mass.data(),
+          c.half_step_per_mass.data(),
+          c.half_step_per_inertia.data(),
+          c.end_x.data(),
+          c.end_y.data(),
+          mill.flights.apex.data()};
 }
 
-void renew_lists_if_needed(RunningMill& mill, double angle) {
-  const MillModel& m = mill.model;
-  const double shell = std::abs(m.speed) * (1 + m.ripple.amplitude) * m.shell.radius;
-  mill.moved += std::max(mill.fastest, shell) * m.time_step;
-  if (!mill.stale && mill.moved <= mill.skin / 2) return;
-  for (std::size_t i = 0; i < mill.charge.size(); ++i) {
-    if (!(std::hypot(mill.charge.x[i], mill.charge.y[i]) < m.shell.radius))
-      left_physics(mill, fmt::format("ball {} is outside the shell", i));
-  }
-  renew_ball_contacts(m, mill.charge, mill.skin, mill.search, mill.ball_contacts);
-  renew_wall_contacts(m, mill.charge, angle, mill.skin, mill.search, mill.wall_contacts);
-  mill.close.resize(std::max(mill.close.size(), mill.ball_contacts.size()));
-  mill.moved = 0;
-  mill.stale = false;
+template <class Body>
+void for_shares(RunningMill& mill, const Body& body) {
+  if (mill.shares.size() == 1) return body(mill.shares[0]);
+  parallel_for(mill.shares.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t s = begin; s < end; ++s) body(mill.shares[s]);
+  });
 }
 
-// What acts on ball i by itself, at the positions' time: forces into the sums, and what is needed to book its losses.
-struct BodyPush {
-  double drag = 0, pool = 0;            // force over velocity [kg/s]
-  double drag_spin = 0, pool_spin = 0;  // couple over spin [N m s]
-  double vx = 0, vy = 0, spin = 0;      // velocities that these were taken at
-  double external = 0;                  // moment of drag and pool about the axis [N m]
-};
-
-// Friction of the ends: a spring vector in the mill's frame, wound back to the limit.
-void end_walls(RunningMill& mill, std::size_t i, const ShellPose& pose, double speed, double speed_before) {
-  const EndWallFriction& ends = mill.model.body.ends;
-  const double dt = mill.model.time_step;
-  Charge& c = mill.charge;
-  // Against the ends during the step, with the position in its middle: that at its end would let a ball that is held
-  // drift outwards by W^2 r dt / 2.
-  const double mid_x = c.x[i] - 0.5 * dt * c.vx[i], mid_y = c.y[i] - 0.5 * dt * c.vy[i];
-  const double ux = (c.vx[i] + speed_before * mid_y) * dt, uy = (c.vy[i] - speed_before * mid_x) * dt;
-  const double wound_x = c.end_x[i] + ux * pose.cos + uy * pose.sin,
-               wound_y = c.end_y[i] + uy * pose.cos - ux * pose.sin;
-  const double limit = ends.coefficient * c.mass[i] * mill.model.gravity + ends.pressure * c.pressure[i];
-  const double wound = std::sqrt(wound_x * wound_x + wound_y * wound_y);
-  const double kept = ends.stiffness * wound > limit ? limit / (ends.stiffness * wound) : 1;
-  const double sx = kept * wound_x, sy = kept * wound_y;
-  mill.ledger.dissipated[static_cast<std::size_t>(Cause::kEndWalls)] +=
-      0.5 * ends.stiffness * ((c.end_x[i] + sx) * (wound_x - sx) + (c.end_y[i] + sy) * (wound_y - sy));
-  c.end_x[i] = sx;
-  c.end_y[i] = sy;
-  const double fx = -ends.stiffness * (sx * pose.cos - sy * pose.sin),
-               fy = -ends.stiffness * (sy * pose.cos + sx * pose.sin);
-  c.fx[i] += fx;
-  c.fy[i] += fy;
-  const double torque = c.x[i] * fy - c.y[i] * fx;
-  mill.ledger.torque += torque;
-  mill.ledger.drive_work += torque * speed * dt;
-}
-
-BodyPush fluids(RunningMill& mill, std::size_t i) {
-  const BodyEffects& body = mill.model.body;
-  Charge& c = mill.charge;
-  const double r = c.radius[i];
-  BodyPush push;
-  if (!body.drag.on() && !body.pool.on()) return push;
-  push.vx = c.vx[i] + c.ax[i];
-  push.vy = c.vy[i] + c.ay[i];
-  push.spin = c.spin[i] + c.alpha[i];
-  const double speed = std::sqrt(push.vx * push.vx + push.vy * push.vy);
-  double lift = 0;
-  if (body.drag.on()) {
-    push.drag = body.drag.per_velocity(r, speed);
-    push.drag_spin = body.drag.per_spin(r);
-  }
-  if (const double depth = body.pool.on() ? body.pool.depth(c.y[i], r) : 0; depth > 0) {
-    const double share = body.pool.volume(depth, r) / body.pool.volume(2 * r, r);
-    push.pool = share * body.pool.slurry.per_velocity(r, speed);
-    push.pool_spin = share * body.pool.slurry.per_spin(r);
-    lift = body.pool.lift(depth, r);
-  }
-  const double fx = -(push.drag + push.pool) * push.vx, fy = lift - (push.drag + push.pool) * push.vy;
-  const double couple = -(push.drag_spin + push.pool_spin) * push.spin;
-  c.fx[i] += fx;
-  c.fy[i] += fy;
-  c.moment[i] += couple;
-  push.external = c.x[i] * fy - c.y[i] * fx + couple;
-  return push;
-}
-
-// Work done against the fluids in the step: forces at its middle, mean of the velocities before and after.
-void book_fluids(RunningMill& mill, const BodyPush& push, double vx, double vy, double spin) {
-  const double along = (push.vx * vx + push.vy * vy) * mill.model.time_step,
-               around = push.spin * spin * mill.model.time_step;
-  auto& dissipated = mill.ledger.dissipated;
-  dissipated[static_cast<std::size_t>(Cause::kFluidDrag)] += push.drag * along + push.drag_spin * around;
-  dissipated[static_cast<std::size_t>(Cause::kSlurryPool)] += push.pool * along + push.pool_spin * around;
-  mill.ledger.torque_external += push.external;
-}
-
-template <bool kBody>
-void kick(RunningMill& mill) {
-  Charge& c = mill.charge;
-  const double dt = mill.model.time_step;
-  const double half_fall = 0.5 * mill.model.gravity * dt;
-  const ShellPose pose = kBody ? pose_of(mill_angle(mill.model, mill.step)) : ShellPose{};
-  const double speed = kBody ? mill_speed(mill.model, mill.step) : 0;
-  const double speed_before = kBody ? mill_speed_before(mill.model, mill.step) : 0;
-  double fastest2 = 0, mass_moment = 0;
-  for (std::size_t i = 0; i < c.size(); ++i) {
-    BodyPush push;
-    if constexpr (kBody) {
-      if (mill.model.body.ends.on()) end_walls(mill, i, pose, speed, speed_before);
-      push = fluids(mill, i);
-      c.pressure[i] = 0;
+// Forces of other shares on the balls of this one, into its own.
+void take_over(RunningMill& mill, Share& share) {
+  for (Share& other : mill.shares) {
+    if (&other == &share) continue;
+    const int low = std::max(other.window, share.first);
+    const int high = std::min(other.window + static_cast<int>(other.fx.size()), share.last);
+    for (auto column : {&Share::fx, &Share::fy, &Share::moment, &Share::pressure}) {
+      if ((other.*column).empty()) continue;
+      for (int i = low; i < high; ++i) {
+        double& theirs = (other.*column)[static_cast<std::size_t>(i - other.window)];
+        (share.*column)[static_cast<std::size_t>(i - share.window)] += theirs;
+        theirs = 0;
+      }
     }
-    const double per_force = c.half_step_per_mass[i], per_moment = c.half_step_per_inertia[i];
-    c.ax[i] = c.fx[i] * per_force;
-    c.ay[i] = c.fy[i] * per_force - half_fall;
-    c.alpha[i] = c.moment[i] * per_moment;
-    if constexpr (kBody) book_fluids(mill, push, c.vx[i] + c.ax[i], c.vy[i] + c.ay[i], c.spin[i] + c.alpha[i]);
-    c.vx[i] += 2 * c.ax[i];
-    c.vy[i] += 2 * c.ay[i];
-    c.spin[i] += 2 * c.alpha[i];
-    c.fx[i] = c.fy[i] = c.moment[i] = 0;
-    fastest2 = std::max(fastest2, c.vx[i] * c.vx[i] + c.vy[i] * c.vy[i]);
-    mass_moment += c.mass[i] * c.x[i];
-    mill.flights.apex[i] = std::max(mill.flights.apex[i], c.y[i]);
   }
-  if (!std::isfinite(mass_moment + fastest2)) {
-    for (std::size_t i = 0; i < c.size(); ++i)
-      if (!std::isfinite(c.x[i] + c.vx[i] + c.vy[i]))
-        left_physics(mill, fmt::format("the motion of ball {} is not a number", i));
+}
+
+void turn_lifters(RunningMill& mill) {
+  if (mill.lifters.faces == 0) return;
+  const ShellPose pose = pose_of(mill_angle(mill.model, mill.step));
+  const std::vector<Feature>& features = mill.model.shell.features;
+  for (std::size_t f = 0; f < features.size(); ++f) {
+    const Direction d = direction_of(features[f], pose);
+    mill.lifter_cos[f] = d.cos;
+    mill.lifter_sin[f] = d.sin;
   }
-  mill.fastest = std::sqrt(fastest2);
-  mill.ledger.mass_moment += mass_moment;
-  ++mill.ledger.steps;
+  mill.lifters.cos = mill.lifter_cos.data();
+  mill.lifters.sin = mill.lifter_sin.data();
+}
+
+KickTerms kick_terms(const RunningMill& mill) {
+  const MillModel& m = mill.model;
+  KickTerms terms{.body = &m.body, .time_step = m.time_step, .gravity = m.gravity};
+  if (m.body.on()) {
+    const ShellPose pose = pose_of(mill_angle(m, mill.step));
+    terms.cos = pose.cos;
+    terms.sin = pose.sin;
+    terms.speed_before = mill_speed_before(m, mill.step);
+  }
+  return terms;
+}
+
+[[noreturn]] void not_a_number(const RunningMill& mill) {
+  const Charge& c = mill.charge;
+  for (std::size_t i = 0; i < c.size(); ++i)
+    if (!std::isfinite(c.x[i] + c.vx[i] + c.vy[i]))
+      left_physics(mill, fmt::format("the motion of ball {} is not a number", c.id[i]));
+  left_physics(mill, "the motion of the charge is not a number");
+}
+
+// The shares' sums into the ledger. One addition a step for each account, so that nothing hangs on the shares.
+void book(RunningMill& mill) {
+  ContactSums balls, wall;
+  KickSums kick;
+  for (const Share& s : mill.shares) {
+    balls.add(s.at_balls);
+    wall.add(s.at_wall);
+    kick.add(s.kick);
+  }
+  if (!kick.finite) not_a_number(mill);
+  mill.fastest = std::sqrt(kick.fastest2);
+  Ledger& l = mill.ledger;
+  const auto lose = [&](Cause cause, double energy) { l.dissipated[static_cast<std::size_t>(cause)] += energy; };
+  lose(Cause::kBallBallNormal, balls.normal_loss);
+  lose(Cause::kBallBallSliding, balls.sliding_loss);
+  lose(Cause::kBallWallNormal, wall.normal_loss);
+  lose(Cause::kBallWallSliding, wall.sliding_loss);
+  lose(Cause::kRolling, balls.rolling_loss + wall.rolling_loss);
+  lose(Cause::kFluidDrag, kick.drag_loss);
+  lose(Cause::kSlurryPool, kick.pool_loss);
+  lose(Cause::kEndWalls, kick.ends_loss);
+  const double torque = wall.torque + kick.ends_torque;
+  l.torque += torque;
+  l.torque_shear += wall.torque_shear;
+  l.torque_external += kick.external;
+  l.drive_work += torque * mill_speed(mill.model, mill.step) * mill.model.time_step;
+  l.mass_moment += kick.mass_moment;
+  ++l.steps;
 }
 
 }  // namespace
 
-RunningMill start_mill(const MillModel& model, Charge charge) {
+double shell_speed(const MillModel& m) { return std::abs(m.speed) * (1 + m.ripple.amplitude) * m.shell.radius; }
+
+ExactSums exact_sums(const MillModel& model, const Charge& charge) {
+  const double radius = *std::max_element(charge.radius.begin(), charge.radius.end());
+  const double mass = std::accumulate(charge.mass.begin(), charge.mass.end(), 0.0);
+  const double stiffness = std::max(model.ball.springs.normal_stiffness, model.wall.springs.normal_stiffness);
+  const double force = 8 * stiffness * radius;  // more than bodies can press that overlap by half a radius
+  const double many = std::max(1.0, double(charge.size()) / 256);
+  const double lifted = mass * std::abs(model.gravity) * model.shell.radius;
+  ExactSums sums;
+  sums.force = exact_up_to(force);
+  sums.moment = exact_up_to(force * radius);
+  sums.torque = exact_up_to(force * model.shell.radius);
+  sums.loss = exact_up_to(stiffness * radius * radius / 4 * many);
+  sums.energy = exact_up_to(stiffness * radius * radius / 4 * many + 4 * lifted);
+  sums.mass_moment = exact_up_to(mass * model.shell.radius);
+  return sums;
+}
+
+std::vector<Contact> contacts_of(const RunningMill& mill, Kind kind) {
+  std::vector<Contact> contacts;
+  const std::vector<int>& id = mill.charge.id;
+  for (const Share& share : mill.shares) {
+    const ContactTable& table = share.touching[static_cast<std::size_t>(kind)];
+    for (int k = 0; k < table.size(); ++k) {
+      Contact c = contact_at(table, k);
+      c.i = id[static_cast<std::size_t>(c.i)];
+      if (kind == Kind::kBalls) c.j = id[static_cast<std::size_t>(c.j)];
+      if (kind == Kind::kBalls && c.i > c.j) std::swap(c.i, c.j);
+      contacts.push_back(c);
+    }
+  }
+  return contacts;
+}
+
+RunningMill start_mill(const MillModel& model, Charge charge, int threads) {
   RunningMill mill;
   mill.model = model;
+  mill.damping = {Damping(model.ball.springs, model.time_step), Damping(model.wall.springs, model.time_step)};
+  mill.exact = exact_sums(model, charge);
   mill.charge = std::move(charge);
+  mill.kernels = &best_kernels();
+  mill.lifters = convex_lifters(model.shell);
+  mill.lifter_cos.resize(model.shell.features.size());
+  mill.lifter_sin.resize(model.shell.features.size());
   Charge& c = mill.charge;
   c.half_step_per_mass.clear();
   c.half_step_per_inertia.clear();
@@ -184,43 +196,69 @@ RunningMill start_mill(const MillModel& model, Charge charge) {
   const auto lifters = static_cast<std::size_t>(model.shell.lifter_count);
   mill.ledger.impacts.lifter_number.assign(lifters, 0);
   mill.ledger.impacts.lifter_energy.assign(lifters, 0);
-  mill.skin = 0.4 * *std::min_element(c.radius.begin(), c.radius.end());
+  mill.shares.resize(static_cast<std::size_t>(threads));
+  for (std::size_t s = 0; s < mill.shares.size(); ++s) {
+    mill.shares[s].first = static_cast<int>(c.size() * s / mill.shares.size());
+    mill.shares[s].last = static_cast<int>(c.size() * (s + 1) / mill.shares.size());
+  }
+  // Few balls fit into the nearest cache, wherever they are.
+  constexpr std::size_t kManyBalls = 1000;
+  mill.searches_per_sort = c.size() < kManyBalls ? 0 : 32;
   return mill;
 }
 
 void advance(RunningMill& mill) {
+  const MillModel& m = mill.model;
+  if (mill.stale) search_near(mill, false);
   ++mill.step;
-  drift(mill);
-  renew_lists_if_needed(mill, mill_angle(mill.model, mill.step));
-  ball_forces(mill);
-  wall_forces(mill);
-  mill.model.body.on() ? kick<true>(mill) : kick<false>(mill);
+  const ChargeView balls = view_of(mill);
+  const double shell = shell_speed(m) * m.time_step;
+  mill.moved += std::max(mill.fastest * m.time_step, shell);
+  const KickTerms terms = kick_terms(mill);
+
+  turn_lifters(mill);
+  for_shares(mill, [&](Share& s) { mill.kernels->drift(balls, m.time_step, s.first, s.last); });
+  for_shares(mill, [&](Share& s) { contact_forces(mill, balls, s); });
+  book_events(mill);
+  for_shares(mill, [&](Share& s) {
+    take_over(mill, s);
+    s.kick = {};
+    const ForceView force{s.fx.data(), s.fy.data(), s.moment.data(), s.pressure.empty() ? nullptr : s.pressure.data(),
+                          s.window};
+    mill.kernels->kick(balls, terms, mill.exact, force, s.first, s.last, s.kick);
+  });
+  book(mill);
+
+  const double next = std::max(mill.fastest * m.time_step, shell);
+  if (2 * (mill.moved + next) > 0.999999 * mill.skin) search_near(mill, true);
 }
 
 Energies energies_of(const RunningMill& mill) {
   const Charge& c = mill.charge;
+  const ExactSum& exact = mill.exact.energy;
+  const BodyEffects& body = mill.model.body;
   Energies e;
   for (std::size_t i = 0; i < c.size(); ++i) {
     const double vx = c.vx[i] - c.ax[i], vy = c.vy[i] - c.ay[i], w = c.spin[i] - c.alpha[i];
-    e.kinetic += 0.5 * c.mass[i] * (vx * vx + vy * vy) + 0.5 * inertia(c.mass[i], c.radius[i]) * w * w;
-    e.potential += c.mass[i] * mill.model.gravity * c.y[i];
+    e.kinetic += exact(0.5 * c.mass[i] * (vx * vx + vy * vy) + 0.5 * inertia(c.mass[i], c.radius[i]) * w * w);
+    e.potential += exact(c.mass[i] * mill.model.gravity * c.y[i]);
+    if (body.pool.on()) e.potential += exact(body.pool.potential(c.y[i], c.radius[i]));
+    if (body.ends.on())
+      e.elastic += exact(0.5 * body.ends.stiffness * (c.end_x[i] * c.end_x[i] + c.end_y[i] * c.end_y[i]));
   }
-  const BodyEffects& body = mill.model.body;
-  for (std::size_t i = 0; i < c.size(); ++i) {
-    if (body.pool.on()) e.potential += body.pool.potential(c.y[i], c.radius[i]);
-    if (body.ends.on()) e.elastic += 0.5 * body.ends.stiffness * (c.end_x[i] * c.end_x[i] + c.end_y[i] * c.end_y[i]);
-  }
-  const auto add = [&](const ContactList& list, const ContactModel& law, auto&& effective_radius) {
-    for (std::size_t k = 0; k < list.size(); ++k) {
-      if (!list.touching[k]) continue;
-      e.elastic += mill.model.plain()
-                       ? elastic_energy(law.springs, list.states[k])
-                       : elastic_energy(law, effective_radius(list.contacts[k]), list.states[k], list.terms[k]);
+  for (const Kind kind : {Kind::kBalls, Kind::kPlate, Kind::kLifters}) {
+    const ContactModel& law = kind == Kind::kBalls ? mill.model.ball : mill.model.wall;
+    for (const Share& share : mill.shares) {
+      const ContactTable& table = share.touching[static_cast<std::size_t>(kind)];
+      for (int k = 0; k < table.size(); ++k) {
+        const Contact contact = contact_at(table, k);
+        const double ri = c.radius[contact.i], rj = kind == Kind::kBalls ? c.radius[contact.j] : 0;
+        const double effective_radius = kind == Kind::kBalls ? ri * rj / (ri + rj) : ri;
+        e.elastic += exact(mill.model.plain() ? elastic_energy(law.springs, contact.state)
+                                              : elastic_energy(law, effective_radius, contact.state, contact.terms));
+      }
     }
-  };
-  add(mill.ball_contacts, mill.model.ball,
-      [&](const Contact& k) { return c.radius[k.i] * c.radius[k.j] / (c.radius[k.i] + c.radius[k.j]); });
-  add(mill.wall_contacts, mill.model.wall, [&](const Contact& k) { return c.radius[k.i]; });
+  }
   return e;
 }
 

@@ -1,13 +1,18 @@
 #pragma once
+#include <array>
 #include <cstdint>
 #include <string>
 
+#include "sim/cell_grid.h"
 #include "sim/charge.h"
-#include "sim/contact_list.h"
 #include "sim/ledger.h"
 #include "sim/mill_model.h"
+#include "sim/share.h"
 
 namespace tumble::sim {
+
+// Steps of the sums over a mill's contacts and balls.
+ExactSums exact_sums(const MillModel& model, const Charge& charge);
 
 // Flights: which balls touch nothing, and how high they have come.
 struct Flights {
@@ -18,23 +23,38 @@ struct Flights {
 // A running mill. Everything that the future depends on: copied, it runs on in the same way.
 struct RunningMill {
   MillModel model;
+  std::array<Damping, 2> damping;  // of a ball on a ball, on the wall
+  ExactSums exact;
   Charge charge;
-  ContactList ball_contacts, wall_contacts;
   Flights flights;
   Ledger ledger;
   std::int64_t step = 0;  // since the mill began to turn
 
-  // Bookkeeping of the near lists; changes no result.
+  // Contacts and near pairs, in as many parts as there are threads.
+  std::vector<Share> shares;
+
+  // Bookkeeping of the near pairs; changes no result.
   double skin = 0;     // [m]
-  double moved = 0;    // what the fastest ball or the shell may have moved since the lists were renewed [m]
+  double moved = 0;    // what the fastest ball or the shell may have moved since the near pairs were found [m]
   double fastest = 0;  // speed of the fastest ball [m/s]
-  bool stale = true;   // the lists must be renewed before use
-  ContactSearch search;
-  std::vector<std::uint32_t> close;  // contacts to look at in this step
+  bool stale = true;   // near pairs must be searched for before use
+  CellGrid grid;
+  int searches = 0, searches_per_sort = 0;  // balls are sorted by cell with every so many searches; 0: never
+  std::vector<Ended> ended_at_wall;
+  const Kernels* kernels = nullptr;
+  ConvexLifters lifters;                       // as the kernels see them at this step, if they can
+  std::vector<double> lifter_cos, lifter_sin;  // of each feature
 };
 
-// Balls as they lie at step 0, with their velocities at that moment (taken from `vx`, `vy`, `spin`).
-RunningMill start_mill(const MillModel& model, Charge charge);
+// Of the shell's circle at its fastest [m/s].
+double shell_speed(const MillModel& model);
+
+// Balls as they lie at step 0, with their velocities at that moment (taken from `vx`, `vy`, `spin`). `threads` share
+// the work of a step.
+RunningMill start_mill(const MillModel& model, Charge charge, int threads = 1);
+
+// The contacts of one kind, in no order; i and j are the balls' numbers.
+std::vector<Contact> contacts_of(const RunningMill& mill, Kind kind);
 
 // One time step: drift, contact forces, kick. Throws WorkError when the run leaves physics.
 void advance(RunningMill& mill);

@@ -5,13 +5,14 @@
 #include <limits>
 
 #include "core/units.h"
+#include "sim/kernels/kernels.h"
 
 namespace tumble::sim {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr int kFewFaces = 8;      // up to here it is quicker to look at all of them
-constexpr int kFacesInBlock = 8;  // of longer runs
+constexpr int kFewFaces = kMostFaces;  // up to here it is quicker to look at all of them
+constexpr int kFacesInBlock = 8;       // of longer runs
 
 using Vec2 = Eigen::Vector2d;
 
@@ -232,8 +233,8 @@ Nearest nearest_on_run(const Shell& shell, const Run& run, double x, double y) {
   if (along >= 0 && along <= face.length) return {out, -face.nx, -face.ny, ends.face};
   const double end = along < 0 ? 0 : face.length;
   const double dx = face.x + end * face.tx - x, dy = face.y + end * face.ty - y;
-  const double d = std::sqrt(dx * dx + dy * dy);
-  return {d, dx / d, dy / d, along < 0 ? ends.at_start : ends.at_end};
+  const double d = std::sqrt(dx * dx + dy * dy), per_d = 1 / d;
+  return {d, dx * per_d, dy * per_d, along < 0 ? ends.at_start : ends.at_end};
 }
 
 }  // namespace
@@ -286,12 +287,30 @@ Shell make_shell(const MillShape& shape) {
   return shell;
 }
 
+ConvexLifters convex_lifters(const Shell& shell) {
+  ConvexLifters lifters;
+  if (shell.runs.size() != 1 || !shell.runs[0].convex) return lifters;
+  const Run& run = shell.runs[0];
+  for (int i = run.begin; i < run.end; ++i) {
+    const LifterFace& f = shell.faces[static_cast<std::size_t>(i)];
+    const int k = lifters.faces++;
+    lifters.x[k] = f.x;
+    lifters.y[k] = f.y;
+    lifters.tx[k] = f.tx;
+    lifters.ty[k] = f.ty;
+    lifters.nx[k] = f.nx;
+    lifters.ny[k] = f.ny;
+    lifters.length[k] = f.length;
+  }
+  return lifters;
+}
+
 ShellPose pose_of(double mill_angle) { return {std::cos(mill_angle), std::sin(mill_angle)}; }
 
 WallPoint nearest_on_wall(const Shell& shell, const ShellPose& pose, int feature, double x, double y) {
   if (feature == 0) {
-    const double rho = std::sqrt(x * x + y * y);
-    return {shell.plate_covered ? 2 * shell.radius : shell.radius - rho, x / rho, y / rho, Face::kPlate};
+    const double rho = std::sqrt(x * x + y * y), per_rho = 1 / rho;
+    return {shell.plate_covered ? 2 * shell.radius : shell.radius - rho, x * per_rho, y * per_rho, Face::kPlate};
   }
   const Feature& f = shell.features[static_cast<std::size_t>(feature) - 1];
   const Direction l = direction_of(f, pose);
@@ -300,14 +319,14 @@ WallPoint nearest_on_wall(const Shell& shell, const ShellPose& pose, int feature
   return {near.distance, near.nx * l.cos - near.ny * l.sin, near.nx * l.sin + near.ny * l.cos, near.face};
 }
 
-void features_near(const Shell& shell, double mill_angle, double x, double y, double reach, std::vector<int>& out) {
-  const double rho = std::hypot(x, y);
+void features_near(const Shell& shell, const ShellPose& pose, double x, double y, double reach,
+                   std::vector<NearFeature>& out) {
+  const double rho = std::sqrt(x * x + y * y);
   if (rho + reach <= shell.tip_radius) return;
-  if (rho + reach > shell.radius && !shell.plate_covered) out.push_back(0);
+  if (rho + reach > shell.radius && !shell.plate_covered) out.push_back({0, shell.radius - rho});
   if (shell.features.empty()) return;
 
   const auto first = static_cast<std::ptrdiff_t>(out.size());
-  const ShellPose pose = pose_of(mill_angle);
   // Whether the point is in front is not asked: on its way to where the list is next renewed it may come round a tip.
   const auto add_if_near = [&](int k) {
     for (int feature = shell.first_feature[static_cast<std::size_t>(k)];
@@ -315,9 +334,10 @@ void features_near(const Shell& shell, double mill_angle, double x, double y, do
       const Feature& f = shell.features[static_cast<std::size_t>(feature) - 1];
       const Direction l = direction_of(f, pose);
       const double u = x * l.cos + y * l.sin, v = y * l.cos - x * l.sin;
-      if (std::hypot(u - f.x, v - f.y) > reach + f.reach) continue;
-      if (closest_of(shell, shell.runs[static_cast<std::size_t>(f.run)], u, v).foot.d2 < reach * reach)
-        out.push_back(feature);
+      const double du = u - f.x, dv = v - f.y, span = reach + f.reach;
+      if (du * du + dv * dv > span * span) continue;
+      const double d2 = closest_of(shell, shell.runs[static_cast<std::size_t>(f.run)], u, v).foot.d2;
+      if (d2 < reach * reach) out.push_back({feature, std::sqrt(d2)});
     }
   };
   // Only lifters whose bounding circle can be in reach: |angle| <= asin(span / rho).
@@ -329,11 +349,11 @@ void features_near(const Shell& shell, double mill_angle, double x, double y, do
     for (int k = 0; k < n; ++k) add_if_near(k);
     return;
   }
-  const double turned = (std::atan2(y, x) - mill_angle) / pitch;
-  const auto nearest = static_cast<std::int64_t>(std::floor(turned + 0.5));
-  for (std::int64_t k = nearest - each_side; k <= nearest + each_side; ++k)
-    add_if_near(static_cast<int>(((k % n) + n) % n));
-  std::sort(out.begin() + first, out.end());
+  const double u = x * pose.cos + y * pose.sin, v = y * pose.cos - x * pose.sin;
+  const auto nearest = static_cast<int>(std::floor(std::atan2(v, u) / pitch + 0.5));
+  for (int k = nearest - each_side; k <= nearest + each_side; ++k) add_if_near(((k % n) + n) % n);
+  std::sort(out.begin() + first, out.end(),
+            [](const NearFeature& a, const NearFeature& b) { return a.feature < b.feature; });
 }
 
 int lifter_around(const Shell& shell, double x, double y) {

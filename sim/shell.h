@@ -74,6 +74,10 @@ struct Shell {
   double lifter_centre = 0, lifter_reach = 0;  // circle that holds any lifter: its centre lies on the lifter's radius
 };
 
+// What of it the kernels can look at in lanes (sim/kernels/kernels.h); no faces if they cannot.
+struct ConvexLifters;
+ConvexLifters convex_lifters(const Shell& shell);
+
 inline constexpr double kSeam = 0.35;  // 20 degrees [rad]
 
 Shell make_shell(const MillShape& shape);
@@ -122,7 +126,12 @@ inline bool may_touch(const Shell& shell, const ShellPose& pose, int feature, do
 }
 
 // Appends the features that are nearer than `reach` to the ball's centre (x, y), in ascending order.
-void features_near(const Shell& shell, double mill_angle, double x, double y, double reach, std::vector<int>& out);
+struct NearFeature {
+  int feature = 0;
+  double distance = 0;  // of the steel, whether it is in sight or not [m]
+};
+void features_near(const Shell& shell, const ShellPose& pose, double x, double y, double reach,
+                   std::vector<NearFeature>& out);
 
 // The lifter whose steel holds the point, at mill angle 0; -1 where none does.
 int lifter_around(const Shell& shell, double x, double y);

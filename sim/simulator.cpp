@@ -96,13 +96,15 @@ Frame frame_of(const RunState& run) {
   f.step = mill.step;
   f.time = double(run.frames_written) * model.steps_per_frame * model.time_step;
   f.mill_angle = mill_angle(model, mill.step);
-  f.x = c.x;
-  f.y = c.y;
-  f.angle = c.angle;
-  for (std::size_t i = 0; i < c.size(); ++i) {  // at the frame's own time
-    f.vx.push_back(c.vx[i] - c.ax[i]);
-    f.vy.push_back(c.vy[i] - c.ay[i]);
-    f.spin.push_back(c.spin[i] - c.alpha[i]);
+  for (auto* v : {&f.x, &f.y, &f.angle, &f.vx, &f.vy, &f.spin}) v->resize(c.size());
+  for (std::size_t i = 0; i < c.size(); ++i) {  // velocities at the frame's own time
+    const auto number = static_cast<std::size_t>(c.id[i]);
+    f.x[number] = c.x[i];
+    f.y[number] = c.y[i];
+    f.angle[number] = c.angle[i];
+    f.vx[number] = c.vx[i] - c.ax[i];
+    f.vy[number] = c.vy[i] - c.ay[i];
+    f.spin[number] = c.spin[i] - c.alpha[i];
   }
   Observables& o = f.observed;
   const double steps = double(run.frame.steps);

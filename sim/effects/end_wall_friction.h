@@ -19,6 +19,11 @@ struct EndWallFriction {
   double pressure = 0;     // limit over the sum of its normal forces
   double stiffness = 0;    // k_t [N/m]
 
+  // How far the spring may be wound [m].
+  template <class Real>
+  Real most_wound(const Real& mass, double gravity, const Real& pressed) const {
+    return (coefficient * gravity * mass + pressure * pressed) * (1 / stiffness);
+  }
   bool on() const { return coefficient > 0 || pressure > 0; }
 };
 

@@ -19,10 +19,14 @@ struct FluidDrag {
 
   bool on() const { return viscosity > 0 || density > 0; }
   // Force over velocity [kg/s], couple over spin [N m s].
-  double per_velocity(double radius, double speed) const {
+  template <class Real>
+  Real per_velocity(const Real& radius, const Real& speed) const {
     return kPi * radius * (6 * viscosity + 0.5 * drag_coefficient * density * radius * speed);
   }
-  double per_spin(double radius) const { return 8 * kPi * viscosity * radius * radius * radius; }
+  template <class Real>
+  Real per_spin(const Real& radius) const {
+    return 8 * kPi * viscosity * radius * radius * radius;
+  }
 };
 
 inline FluidDrag make_fluid_drag(const Config& config) {

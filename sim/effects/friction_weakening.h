@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "core/effects.h"
+#include "sim/laws/real.h"
 
 // Friction that falls with the sliding speed of the contact: mu(v) = mu (1 - drop (1 - exp(-v / v_s))).
 //
@@ -14,7 +15,10 @@ struct FrictionWeakening {
   double drop = 0;           // share lost at high speed
   double sliding_speed = 1;  // v_s [m/s]
 
-  double share_at(double v) const { return 1 - drop * (1 - std::exp(-v / sliding_speed)); }
+  template <class Real>
+  Real share_at(const Real& v) const {
+    return 1 - drop * (1 - decay(Real(v / sliding_speed)));
+  }
 };
 
 inline FrictionWeakening make_friction_weakening(const Config& config) {

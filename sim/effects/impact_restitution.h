@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "core/effects.h"
+#include "sim/laws/real.h"
 
 // Restitution that falls with the impact's speed: e(v) = e (1 - drop (1 - exp(-v / v_e))), v the normal speed at the
 // first touch. The contact keeps that value until it parts, however the speed changes meanwhile.
@@ -14,7 +15,11 @@ struct ImpactRestitution {
   double drop = 0;          // share lost in fast impacts
   double impact_speed = 1;  // v_e [m/s]
 
-  double share_at(double v) const { return 1 - drop * (1 - std::exp(-std::abs(v) / impact_speed)); }
+  template <class Real>
+  Real share_at(const Real& v) const {
+    using std::abs;
+    return 1 - drop * (1 - decay(Real(abs(v) / impact_speed)));
+  }
 };
 
 inline ImpactRestitution make_impact_restitution(const Config& config) {

@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "sim/effects/fluid_drag.h"
+#include "sim/laws/real.h"
 
 // A pool of slurry, level and at rest in the lab: a ball immersed to the depth h is lifted by what it displaces,
 //
@@ -17,9 +18,19 @@ struct SlurryPool {
   double gravity = 0;  // g [m/s2]
 
   bool on() const { return slurry.density > 0; }
-  double depth(double y, double radius) const { return std::clamp(surface - (y - radius), 0.0, 2 * radius); }
-  double volume(double depth, double radius) const { return kPi * depth * depth * (3 * radius - depth) / 3; }
-  double lift(double depth, double radius) const { return slurry.density * gravity * volume(depth, radius); }
+  template <class Real>
+  Real depth(const Real& y, const Real& radius) const {
+    const Real below = surface - (y - radius);
+    return select(below < Real(0), Real(0), select(below > 2 * radius, 2 * radius, below));
+  }
+  template <class Real>
+  Real volume(const Real& depth, const Real& radius) const {
+    return kPi * depth * depth * (3 * radius - depth) * (1.0 / 3);
+  }
+  template <class Real>
+  Real lift(const Real& depth, const Real& radius) const {
+    return slurry.density * gravity * volume(depth, radius);
+  }
   // Of the lift, 0 for a ball that only touches the surface [J].
   double potential(double y, double radius) const {
     const double h = depth(y, radius);

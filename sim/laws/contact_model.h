@@ -39,67 +39,76 @@ struct ContactModel {
 };
 
 // What such a contact remembers beside ContactState.
-struct TermState {
-  double force = 0;    // F_n [N]
-  double stored = 0;   // U of the normal spring, cohesion included [J]
-  double damping = 0;  // C of the linear law at this contact's restitution [N s/m]
-  double roll = 0;     // theta_r [rad]
+template <class Real>
+struct BasicTermState {
+  Real force = 0;    // F_n [N]
+  Real stored = 0;   // U of the normal spring, cohesion included [J]
+  Real damping = 0;  // C of the linear law at this contact's restitution [N s/m]
+  Real roll = 0;     // theta_r [rad]
 };
+using TermState = BasicTermState<double>;
 
 // The pair, and its rolling during the step.
-struct Pairing {
-  double effective_mass = 0;    // [kg]
-  double effective_radius = 0;  // R [m]
-  double roll = 0;              // [rad] since the last step
+template <class Real>
+struct BasicPairing {
+  Real effective_mass = 0;    // [kg]; looked at in the first step alone
+  Real effective_radius = 0;  // R [m]
+  Real roll = 0;              // [rad] since the last step
 };
+using Pairing = BasicPairing<double>;
 
-inline double rolling_stiffness(const ContactModel& law, double effective_radius) {
+template <class Real>
+Real rolling_stiffness(const ContactModel& law, const Real& effective_radius) {
   return law.springs.tangential_stiffness * effective_radius * effective_radius;
 }
 
-inline Reaction touch(const ContactModel& law, const Touch& now, const Pairing& pair, bool first, double time_step,
-                      ContactState& state, TermState& terms) {
+// C of a contact that begins: at its own restitution.
+inline double damping_from(const ContactModel& law, const Touch& now, const Pairing& pair, double time_step) {
+  if (law.restitution.drop == 0) return now.damping;
+  LinearSpringDashpot slower = law.springs;
+  slower.restitution *= law.restitution.share_at(now.closing);
+  return Damping(slower, time_step).of(pair.effective_mass);
+}
+
+// `terms.damping` is set by the caller when the contact begins (damping_from).
+template <class Real>
+BasicReaction<Real> touch(const ContactModel& law, const BasicTouch<Real>& now, const BasicPairing<Real>& pair,
+                          bool first, double time_step, BasicContactState<Real>& state, BasicTermState<Real>& terms) {
+  using std::abs;
+  using std::copysign;
+  using std::sqrt;
   const LinearSpringDashpot& s = law.springs;
-  const double d = now.overlap;
-  if (first) {
-    terms.damping = now.damping;
-    if (law.restitution.drop != 0) {
-      LinearSpringDashpot slower = s;
-      slower.restitution *= law.restitution.share_at(now.closing);
-      terms.damping = Damping(slower, time_step).of(pair.effective_mass);
-    }
-  }
-  double spring = s.normal_stiffness * d, stored = 0.5 * spring * d, stiffening = 1;
+  const Real d = now.overlap;
+  Real spring = s.normal_stiffness * d, stored = 0.5 * spring * d, stiffening = 1;
   if (law.hertz.share != 0) {
-    const double hertz = law.hertz.stiffness * std::sqrt(pair.effective_radius * d) * d;
+    const Real hertz = law.hertz.stiffness * sqrt(pair.effective_radius * d) * d;
     spring += law.hertz.share * (hertz - spring);
     stored += law.hertz.share * (0.4 * hertz * d - stored);
-    stiffening = spring / std::sqrt(2 * stored * s.normal_stiffness);
+    stiffening = spring / sqrt(2 * stored * s.normal_stiffness);
   }
-  const double weight = edge_weight(d, now.closing, time_step);
-  const double pressure = spring + terms.damping * stiffening * now.closing * weight;
-  const double attraction = law.cohesion.per_radius * pair.effective_radius;
+  const Real weight = edge_weight(d, now.closing, time_step);
+  const Real pressure = spring + terms.damping * stiffening * now.closing * weight;
+  const Real attraction = law.cohesion.per_radius * pair.effective_radius;
   stored -= attraction * d;
 
-  Reaction r;
+  BasicReaction<Real> r;
   r.normal = pressure - attraction * weight;
   r.normal_loss =
       0.5 * (terms.force + r.normal) * (d - (first ? d - now.approach : state.overlap)) - (stored - terms.stored);
 
-  double limit = s.friction * std::abs(pressure);
-  if (law.friction.drop != 0) limit *= law.friction.share_at(std::abs(now.slide) / time_step);
+  Real limit = s.friction * abs(pressure);
+  if (law.friction.drop != 0) limit *= law.friction.share_at(Real(abs(now.slide) / time_step));
   const double k_t = s.tangential_stiffness;
-  const double wound = state.spring + now.slide;
-  const double counted = first ? touched_share(now) * wound : wound;
-  const double held = k_t * std::abs(counted) > limit ? std::copysign(limit / k_t, counted) : counted;
+  const Real wound = state.spring + now.slide;
+  const Real held = held_within(first ? touched_share(now) * wound : wound, limit, k_t);
   r.tangential = -k_t * held;
   r.sliding_loss = 0.5 * k_t * (state.spring + held) * (wound - held);
 
   if (law.rolling.coefficient != 0) {
-    const double k_r = rolling_stiffness(law, pair.effective_radius);
-    const double most = law.rolling.coefficient * pair.effective_radius * std::abs(pressure);
-    const double turned = terms.roll + pair.roll;
-    const double kept = k_r * std::abs(turned) > most ? std::copysign(most / k_r, turned) : turned;
+    const Real k_r = rolling_stiffness(law, pair.effective_radius);
+    const Real most = law.rolling.coefficient * pair.effective_radius * abs(pressure);
+    const Real turned = terms.roll + pair.roll;
+    const Real kept = select(k_r * abs(turned) > most, copysign(most / k_r, turned), turned);
     r.couple = -k_r * kept;
     r.rolling_loss = 0.5 * k_r * (terms.roll + kept) * (turned - kept);
     terms.roll = kept;

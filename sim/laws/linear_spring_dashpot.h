@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "core/units.h"
+#include "sim/laws/real.h"
 
 // Linear spring and dashpot with Coulomb friction (Mishra & Rajamani 1992, fig. 1 and eqs 1, 13, 14; tangential spring
 // with history after Cundall & Strack 1979).
@@ -43,6 +44,7 @@ inline double damping_ratio(double restitution) {
 struct Damping {
   double twice_ratio = 0, excess = 0, stiffness = 0, time_step = 0;
 
+  Damping() = default;
   Damping(const LinearSpringDashpot& law, double dt)
       : twice_ratio(2 * damping_ratio(law.restitution)), stiffness(law.normal_stiffness), time_step(dt) {
     const double z = twice_ratio / 2;
@@ -55,60 +57,79 @@ struct Damping {
 };
 
 // What a contact remembers from step to step; all zero while apart.
-struct ContactState {
-  double overlap = 0;       // d [m]
-  double dashpot = 0;       // C v_n [N]
-  double spring = 0;        // s [m]
-  double normal_lost = 0;   // energy lost since the first touch, in the dashpot [J]
-  double sliding_lost = 0;  // likewise, in what the tangential spring was wound back [J]
+template <class Real>
+struct BasicContactState {
+  Real overlap = 0;       // d [m]
+  Real dashpot = 0;       // C v_n [N]
+  Real spring = 0;        // s [m]
+  Real normal_lost = 0;   // energy lost since the first touch, in the dashpot [J]
+  Real sliding_lost = 0;  // likewise, in what the tangential spring was wound back [J]
 };
+using ContactState = BasicContactState<double>;
 
 // Motion of a touching pair at one step.
-struct Touch {
-  double overlap = 0;   // d [m]
-  double closing = 0;   // v_n at this step [m/s]
-  double approach = 0;  // growth of the overlap during the step that led here, from the velocities [m]
-  double slide = 0;     // tangential displacement during that step [m]
-  double damping = 0;   // C of the pair [N s/m]
+template <class Real>
+struct BasicTouch {
+  Real overlap = 0;   // d [m]
+  Real closing = 0;   // v_n at this step [m/s]
+  Real approach = 0;  // growth of the overlap during the step that led here, from the velocities [m]
+  Real slide = 0;     // tangential displacement during that step [m]
+  Real damping = 0;   // C of the pair [N s/m]
 };
+using Touch = BasicTouch<double>;
 
-struct Reaction {
-  double normal = 0;        // F_n [N]
-  double tangential = 0;    // F_t [N]
-  double normal_loss = 0;   // [J] since the last step
-  double sliding_loss = 0;  // [J] since the last step
-  double couple = 0;        // against rolling [N m]; 0 for this law
-  double rolling_loss = 0;  // [J] since the last step; 0 for this law
+template <class Real>
+struct BasicReaction {
+  Real normal = 0;        // F_n [N]
+  Real tangential = 0;    // F_t [N]
+  Real normal_loss = 0;   // [J] since the last step
+  Real sliding_loss = 0;  // [J] since the last step
+  Real couple = 0;        // against rolling [N m]; 0 for this law
+  Real rolling_loss = 0;  // [J] since the last step; 0 for this law
 };
+using Reaction = BasicReaction<double>;
 
 // A contact begins and ends within a step, and whole steps of a force that jumps at the edge (dashpot, cohesion) would
 // make the restitution err in the first order of the time step, by up to pi z dt / (contact time). With s = d / (|v|
 // dt) steps to or from the edge, the weights below add up to the contact's true time: w(s) + w(s + 1) = s + 3/2. They
 // are continuous and vanish at the edge, so that it does not matter whether a last sliver of overlap is met or missed.
-inline double edge_weight(double overlap, double closing, double time_step) {
-  const double reach = std::abs(closing) * time_step;
-  if (!(overlap < 2 * reach)) return 1;
-  const double s = overlap / reach;
-  return s < 1 ? 1.5 * s : 2 - 0.5 * s;
+template <class Real>
+Real edge_weight(const Real& overlap, const Real& closing, double time_step) {
+  using std::abs;
+  const Real reach = abs(closing) * time_step;
+  const Real s = overlap / reach;
+  return select(overlap < 2 * reach, select(s < Real(1), 1.5 * s, 2 - 0.5 * s), Real(1));
 }
 
 // Share of the step in which a pair first touches that lies after the touch: only that winds the tangential spring.
-inline double touched_share(const Touch& now) { return now.overlap < now.approach ? now.overlap / now.approach : 1; }
+template <class Real>
+Real touched_share(const BasicTouch<Real>& now) {
+  return select(now.overlap < now.approach, now.overlap / now.approach, Real(1));
+}
+
+// The spring's displacement, wound back to what the limit of friction holds.
+template <class Real>
+Real held_within(const Real& wound, const Real& limit, double stiffness) {
+  using std::abs;
+  using std::copysign;
+  const double compliance = 1 / stiffness;
+  return select(stiffness * abs(wound) > limit, copysign(limit * compliance, wound), wound);
+}
 
 // `first`: the pair did not touch at the step before.
-inline Reaction touch(const LinearSpringDashpot& law, const Touch& now, bool first, double time_step,
-                      ContactState& state) {
+template <class Real>
+BasicReaction<Real> touch(const LinearSpringDashpot& law, const BasicTouch<Real>& now, bool first, double time_step,
+                          BasicContactState<Real>& state) {
+  using std::abs;
   const double k_n = law.normal_stiffness, k_t = law.tangential_stiffness;
-  const double dashpot = now.damping * now.closing * edge_weight(now.overlap, now.closing, time_step);
-  Reaction r;
+  const Real dashpot = now.damping * now.closing * edge_weight(now.overlap, now.closing, time_step);
+  BasicReaction<Real> r;
   r.normal = k_n * now.overlap + dashpot;
-  const double limit = law.friction * std::abs(r.normal);
-  const double wound = state.spring + now.slide;
-  const double counted = first ? touched_share(now) * wound : wound;
-  const double spring = k_t * std::abs(counted) > limit ? std::copysign(limit / k_t, counted) : counted;
+  const Real wound = state.spring + now.slide;
+  const Real spring = held_within(first ? touched_share(now) * wound : wound, law.friction * abs(r.normal), k_t);
   r.tangential = -k_t * spring;
 
-  const double before = first ? now.overlap - now.approach : state.overlap;
+  const Real before = first ? now.overlap - now.approach : state.overlap;
   r.normal_loss = 0.5 * (state.dashpot + dashpot) * (now.overlap - before);
   if (first) r.normal_loss -= 0.5 * k_n * now.overlap * before;
   r.sliding_loss = 0.5 * k_t * (state.spring + spring) * (wound - spring);

@@ -49,13 +49,13 @@ inline sim::Charge start_of(const Case& c, const sim::MillModel& model) {
 inline void look_at_contacts(const sim::RunningMill& mill, Outcome& seen) {
   const sim::Charge& c = mill.charge;
   const sim::Shell& shell = mill.model.shell;
-  const auto touching = [](const sim::ContactList& list) {
+  const auto touching = [&](std::initializer_list<sim::Kind> kinds) {
     std::set<std::pair<int, int>> pairs;
-    for (std::size_t k = 0; k < list.size(); ++k)
-      if (list.touching[k]) pairs.emplace(list.contacts[k].i, list.contacts[k].j);
+    for (const sim::Kind kind : kinds)
+      for (const sim::Contact& k : sim::contacts_of(mill, kind)) pairs.emplace(k.i, k.j);
     return pairs;
   };
-  const auto balls = touching(mill.ball_contacts), walls = touching(mill.wall_contacts);
+  const auto balls = touching({sim::Kind::kBalls}), walls = touching({sim::Kind::kPlate, sim::Kind::kLifters});
   const double angle = sim::mill_angle(mill.model, mill.step);
   const sim::ShellPose pose = sim::pose_of(angle);
   const auto at = [&](std::size_t i) {

@@ -19,7 +19,7 @@ double departure_from_top_deg(double v0) {
     advance(mill);
     const double x = mill.charge.x[0], y = mill.charge.y[0];
     if (x < 0) return 180;  // over the top
-    if (!mill.wall_contacts.touching[0]) return 180 - degrees(std::atan2(x, -y));
+    if (contacts_of(mill, Kind::kPlate).empty()) return 180 - degrees(std::atan2(x, -y));
   }
   return -1;
 }

@@ -29,12 +29,13 @@ Impact head_on(double share, double e, double speed, double steps, double phase 
   Impact impact;
   for (int k = 0; k < 400'000; ++k) {
     advance(mill);
-    const bool touch = !mill.ball_contacts.touching.empty() && mill.ball_contacts.touching[0];
+    const std::vector<Contact> contacts = contacts_of(mill, Kind::kBalls);
+    const bool touch = !contacts.empty();
     if (!touch && impact.seconds > 0) break;
     if (!touch) continue;
     impact.seconds += model.time_step;
-    if (mill.ball_contacts.states[0].overlap > impact.overlap) {
-      impact.overlap = mill.ball_contacts.states[0].overlap;
+    if (contacts[0].state.overlap > impact.overlap) {
+      impact.overlap = contacts[0].state.overlap;
       impact.elastic = energies_of(mill).elastic;
     }
   }

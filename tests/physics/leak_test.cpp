@@ -34,7 +34,9 @@ Course run(const Config& config, double seconds) {
     const double angle = mill_angle(model, mill.step);
     const ShellPose pose = pose_of(angle);
     std::vector<std::uint8_t> deep(mill.charge.size(), 0);
-    for (const Contact& contact : mill.wall_contacts.contacts) {
+    std::vector<Contact> at_wall = contacts_of(mill, Kind::kPlate);
+    for (const Contact& c : contacts_of(mill, Kind::kLifters)) at_wall.push_back(c);
+    for (const Contact& contact : at_wall) {
       const auto i = static_cast<std::size_t>(contact.i);
       const double clear = nearest_on_wall(model.shell, pose, contact.j, mill.charge.x[i], mill.charge.y[i]).distance /
                            mill.charge.radius[i];

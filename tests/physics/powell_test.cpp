@@ -42,7 +42,7 @@ double simulated_deg(const MillModel& m, const Ball& ball, double mu) {
   double held = NAN;
   while (std::hypot(mill.charge.x[0], mill.charge.y[0]) > std::hypot(ball.x, ball.y) - 1e-3) {
     advance(mill);
-    const ContactState* lifter = wall_touch(mill, true);
+    const std::optional<ContactState> lifter = wall_touch(mill, true);
     const double grip = lifter ? m.wall.springs.tangential_stiffness * std::abs(lifter->spring) : 0;
     const double most = lifter ? mu * m.wall.springs.normal_stiffness * lifter->overlap : 0;
     if (wall_touch(mill, false) || grip < 0.98 * most) held = degrees(mill_angle(m, mill.step));

@@ -150,9 +150,9 @@ TEST(Places, HoldAllThatIsLostAtTheWall) {
 
   const Impacts& n = mill.ledger.impacts;
   double lasting = 0;
-  for (std::size_t k = 0; k < mill.wall_contacts.size(); ++k)
-    if (mill.wall_contacts.touching[k])
-      lasting += mill.wall_contacts.states[k].normal_lost + mill.wall_contacts.states[k].sliding_lost;
+  for (const Kind kind : {Kind::kPlate, Kind::kLifters})
+    for (const Contact& contact : contacts_of(mill, kind))
+      lasting += contact.state.normal_lost + contact.state.sliding_lost;
   const auto lost = [&](Cause cause) { return mill.ledger.dissipated[static_cast<std::size_t>(cause)]; };
   const double all = lost(Cause::kBallWallNormal) + lost(Cause::kBallWallSliding);
   ASSERT_GT(all, 1);

@@ -4,6 +4,7 @@
 
 #include <bit>
 
+#include "sim/ball_order.h"
 #include "sim/packing.h"
 #include "sim/running_mill.h"
 #include "tests/support/effects.h"
@@ -22,45 +23,56 @@ std::uint64_t hash_of(const Charge& c, const Ledger& l) {
   return h;
 }
 
-// Near lists, cells, memory carried over, lifters looked up by angle: none of it may change a bit of what all pairs
-// give.
+// What the fast way does otherwise than the plain one and may not change a bit: near pairs and their tiers, cells,
+// lifters looked up by angle; lanes of each kind; work shared by threads; balls that are stored in another order.
+struct Way {
+  const Kernels* kernels;
+  int threads, searches_per_sort;
+};
+std::vector<Way> ways() {
+  std::vector<Way> all;
+  for (const Kernels* kernels : all_kernels()) all.push_back({kernels, 1, 0});
+  all.push_back({&best_kernels(), 3, 0});
+  all.push_back({&best_kernels(), 2, 1});
+  return all;
+}
+
+void expect_same_bits(const Config& config, int steps) {
+  const MillModel model = make_mill_model(config);
+  const Charge start = place_loosely(config, model, draw_balls(config));
+  ReferenceMill plain = make_reference_mill(model, start);
+  for (int k = 0; k < steps; ++k) advance(plain);
+  EXPECT_GT(plain.ledger.dissipated[1], 0) << "nothing has slid";
+  EXPECT_GT(plain.ledger.dissipated[2], 0) << "nothing has touched the wall";
+  for (const Way& way : ways()) {
+    RunningMill fast = start_mill(model, start, way.threads);
+    fast.kernels = way.kernels;
+    fast.searches_per_sort = way.searches_per_sort;
+    for (int k = 0; k < steps; ++k) advance(fast);
+    sort_by_number(fast);
+    EXPECT_EQ(hash_of(fast.charge, fast.ledger), hash_of(plain.charge, plain.ledger))
+        << name_of(config.mill.lifters.profile) << ", effects " << names_of(config.effects) << "; " << way.kernels->name
+        << ", " << way.threads << " threads, sorted with every search number " << way.searches_per_sort;
+  }
+}
+
 TEST(Reference, GivesTheSameBits) {
   for (const LifterProfile profile : {LifterProfile::kRectangle, LifterProfile::kTriangle, LifterProfile::kNone}) {
     Config config = paper_mill();
     config.charge.count = 60;
     config.mill.lifters.profile = profile;
     config.contact.friction = 0.3;
-    const MillModel model = make_mill_model(config);
-    const Charge start = place_loosely(config, model, draw_balls(config));
-    RunningMill fast = start_mill(model, start);
-    ReferenceMill plain = make_reference_mill(model, start);
-    for (int k = 0; k < 6000; ++k) {
-      advance(fast);
-      advance(plain);
-    }
-    EXPECT_GT(fast.ledger.dissipated[1], 0) << "nothing has slid";
-    EXPECT_GT(fast.ledger.dissipated[2], 0) << "nothing has touched the wall";
-    EXPECT_EQ(hash_of(fast.charge, fast.ledger), hash_of(plain.charge, plain.ledger)) << name_of(profile);
+    expect_same_bits(config, 5000);
   }
 }
 
-// Nor with effects, any of them together.
 TEST(Reference, GivesTheSameBitsWithEffects) {
   Random random(7);
   for (int trial = 0; trial < 6; ++trial) {
     Config config = paper_mill();
     config.charge.count = 40;
     config.effects = trial == 0 ? every_effect() : some_effects(random);
-    const MillModel model = make_mill_model(config);
-    const Charge start = place_loosely(config, model, draw_balls(config));
-    RunningMill fast = start_mill(model, start);
-    ReferenceMill plain = make_reference_mill(model, start);
-    for (int k = 0; k < 2000; ++k) {
-      advance(fast);
-      advance(plain);
-    }
-    EXPECT_GT(fast.ledger.dissipated[2], 0) << "nothing has touched the wall";
-    EXPECT_EQ(hash_of(fast.charge, fast.ledger), hash_of(plain.charge, plain.ledger)) << names_of(config.effects);
+    expect_same_bits(config, 2000);
   }
 }
 

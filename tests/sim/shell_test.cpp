@@ -183,8 +183,10 @@ TEST(Shell, FeaturesNearABall) {
       const double rho = random.uniform(0, 0.26), reach = random.uniform(0.005, 0.12);
       const double x = rho * std::cos(direction), y = rho * std::sin(direction);
       const ShellPose pose = pose_of(angle);
+      std::vector<NearFeature> near;
+      features_near(shell, pose, x, y, reach, near);
       std::vector<int> found;
-      features_near(shell, angle, x, y, reach, found);
+      for (const NearFeature& f : near) found.push_back(f.feature);
       EXPECT_TRUE(std::is_sorted(found.begin(), found.end()));
       for (int f = 0; f < feature_count(shell); ++f) {
         const WallPoint w = nearest_on_wall(shell, pose, f, x, y);

@@ -1,4 +1,6 @@
 #pragma once
+#include <optional>
+
 #include "tests/support/balls.h"
 
 // A ball in the corner of shell and lifter, which carries it up: for the tests of departure and centrifuging.
@@ -30,12 +32,11 @@ inline Ball ball_in_the_corner(const MillModel& m, double radius, double mass) {
   return b;
 }
 
-// Memory of the ball's contact with the shell's circle, or with a lifter; nullptr while it does not touch.
-inline const ContactState* wall_touch(const RunningMill& mill, bool lifter) {
-  const ContactList& list = mill.wall_contacts;
-  for (std::size_t k = 0; k < list.size(); ++k)
-    if (list.touching[k] && (list.contacts[k].j != 0) == lifter) return &list.states[k];
-  return nullptr;
+// Memory of the ball's contact with the shell's circle, or with a lifter; nothing while it does not touch.
+inline std::optional<ContactState> wall_touch(const RunningMill& mill, bool lifter) {
+  const std::vector<Contact> contacts = contacts_of(mill, lifter ? Kind::kLifters : Kind::kPlate);
+  if (contacts.empty()) return std::nullopt;
+  return contacts[0].state;
 }
 
 }  // namespace tumble::sim

@@ -1,0 +1,36 @@
+#pragma once
+#include <bit>
+#include <cmath>
+#include <cstdint>
+
+// The laws are written once, for one contact and for several side by side: `Real` is a double or a batch of doubles
+// (sim/kernels/lanes.h). They have no branch that depends on a value, and every operation is rounded in the same way in
+// both, so a contact feels the same force, to the last bit, whichever way it is worked out.
+namespace tumble::sim {
+
+inline double select(bool condition, double yes, double no) { return condition ? yes : no; }
+
+// Whole numbers as they stand in the last bits of a double.
+inline constexpr double kWholeNumbers = 6755399441055744;  // 1.5 x 2^52
+
+// 2^n of a whole number n.
+template <class Real>
+struct PowerOfTwo {
+  static Real of(const Real& n) {
+    return std::bit_cast<double>(std::bit_cast<std::uint64_t>(n + (kWholeNumbers + 1023)) << 52);
+  }
+};
+
+// exp(-u) for u >= 0, to the last but one bit: 2^-n exp(-r), with the Taylor series for |r| <= ln 2 / 2.
+template <class Real>
+Real decay(const Real& u) {
+  constexpr double kLn2High = 6.93147180369123816490e-01, kLn2Low = 1.90821492927058770002e-10;
+  const Real within = select(u < Real(700), u, Real(700));
+  const Real n = (within * 1.4426950408889634 + kWholeNumbers) - kWholeNumbers;
+  const Real r = (within - n * kLn2High) - n * kLn2Low;
+  Real sum = 1;
+  for (int k = 14; k > 0; --k) sum = 1 - sum * r * (1.0 / k);
+  return sum * PowerOfTwo<Real>::of(-n);
+}
+
+}  // namespace tumble::sim

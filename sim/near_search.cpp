@@ -1,0 +1,167 @@
+#include "sim/near_search.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <numeric>
+#include <optional>
+
+#include "core/parallel_for.h"
+#include "sim/ball_order.h"
+#include "sim/kernels/meeting.h"
+
+namespace tumble::sim {
+namespace {
+
+// Contacts of one kind, for asking whether a pair is among them.
+class Known {
+ public:
+  Known(const RunningMill& mill, Kind kind) {
+    for (const Share& share : mill.shares) {
+      const ContactTable& table = share.touching[static_cast<std::size_t>(kind)];
+      for (int k = 0; k < table.size(); ++k) {
+        std::pair<int, int> pair(table.i[k], table.j[k]);
+        if (kind == Kind::kBalls) pair = std::minmax(pair.first, pair.second);
+        keys_.push_back(key(pair.first, pair.second));
+      }
+    }
+    std::sort(keys_.begin(), keys_.end());
+  }
+  bool has(int i, int j) const { return std::binary_search(keys_.begin(), keys_.end(), key(i, j)); }
+
+ private:
+  static std::uint64_t key(int i, int j) {
+    return (static_cast<std::uint64_t>(i) << 32) | static_cast<std::uint32_t>(j);
+  }
+  std::vector<std::uint64_t> keys_;
+};
+
+// Pairs are found from the larger of the two balls, so that a few large ones do not make all the others look far; of
+// equal ones from that which comes first in the grid.
+void near_balls(const RunningMill& mill, Share& share, bool settled, int first, int last) {
+  const Charge& c = mill.charge;
+  const CellGrid& grid = mill.grid;
+  const GridView view{grid.x(), grid.y(), grid.radius()};
+  const Kernels& kernels = *mill.kernels;
+  const double smallest = *std::min_element(c.radius.begin(), c.radius.end());
+  NearPairs& near = share.near[static_cast<std::size_t>(Kind::kBalls)];
+  near.clear(mill.skin);
+  std::optional<Known> known;
+  if (!settled) known.emplace(mill, Kind::kBalls);
+  std::vector<int>&found_p = share.hits, &found_q = share.parted;
+  for (int p = first; p < last; ++p) {
+    const double radius = view.radius[p];
+    std::size_t found = 0;
+    grid.for_ranges(p, 2 * radius + mill.skin, radius > smallest, [&](int from, int to, bool later) {
+      const std::size_t room = found + static_cast<std::size_t>(std::max(0, to - from) + 2 * kMostLanes);
+      if (room > found_p.size()) {
+        found_p.resize(2 * room);
+        found_q.resize(2 * room);
+      }
+      found += static_cast<std::size_t>(
+          kernels.near_of(view, p, from, to, mill.skin, !later, found_p.data() + found, found_q.data() + found));
+    });
+    for (std::size_t f = 0; f < found; ++f) {
+      const int q = found_q[f], i = grid.balls()[static_cast<std::size_t>(p)],
+                j = grid.balls()[static_cast<std::size_t>(q)];
+      const double dx = view.x[q] - view.x[p], dy = view.y[q] - view.y[p], reach = radius + view.radius[q];
+      if (balls_touch(dx, dy, reach) && (settled || known->has(std::min(i, j), std::max(i, j)))) continue;
+      near.add(i, j, std::sqrt(dx * dx + dy * dy) - reach);
+    }
+  }
+}
+
+void near_wall(const RunningMill& mill, Share& share, bool settled) {
+  const Charge& c = mill.charge;
+  const Shell& shell = mill.model.shell;
+  NearPairs& plate = share.near[static_cast<std::size_t>(Kind::kPlate)];
+  NearPairs& lifters = share.near[static_cast<std::size_t>(Kind::kLifters)];
+  plate.clear(mill.skin);
+  lifters.clear(mill.skin);
+  std::optional<Known> known_plate, known_lifters;
+  if (!settled) {
+    known_plate.emplace(mill, Kind::kPlate);
+    known_lifters.emplace(mill, Kind::kLifters);
+  }
+  const ShellPose pose = pose_of(mill_angle(mill.model, mill.step));
+  std::vector<NearFeature> found;
+  for (int i = share.first; i < share.last; ++i) {
+    const double x = c.x[i], y = c.y[i], radius = c.radius[i];
+    const double inside = shell.tip_radius - radius - mill.skin;
+    if (inside > 0 && x * x + y * y < inside * inside) continue;
+    found.clear();
+    features_near(shell, pose, x, y, radius + mill.skin, found);
+    for (const NearFeature& f : found) {
+      const bool is_plate = f.feature == 0;
+      if (f.distance < radius) {
+        const bool touches = nearest_on_wall(shell, pose, f.feature, x, y).distance < radius;
+        if (touches && (settled || (is_plate ? known_plate : known_lifters)->has(i, f.feature))) continue;
+      }
+      (is_plate ? plate : lifters).add(i, f.feature, f.distance - radius);
+    }
+  }
+}
+
+// The window of balls that the share's forces can fall on.
+void open_window(const RunningMill& mill, Share& share) {
+  int low = share.first, high = share.last;
+  const auto widen = [&](const std::vector<int>& balls, int count) {
+    for (int k = 0; k < count; ++k) {
+      low = std::min(low, balls[static_cast<std::size_t>(k)]);
+      high = std::max(high, balls[static_cast<std::size_t>(k)] + 1);
+    }
+  };
+  if (mill.shares.size() > 1) {
+    for (int kind = 0; kind < kKinds; ++kind) {
+      const auto k = static_cast<std::size_t>(kind);
+      for (const NearPairs::Tier& t : share.near[k].tiers) {
+        widen(t.i, t.count);
+        if (kind == 0) widen(t.j, t.count);
+      }
+      widen(share.touching[k].i, share.touching[k].count);
+      if (kind == 0) widen(share.touching[k].j, share.touching[k].count);
+    }
+  }
+  share.window = low;
+  const auto n = static_cast<std::size_t>(high - low);
+  for (auto* v : {&share.fx, &share.fy, &share.moment}) v->assign(n, 0.0);
+  share.pressure.assign(mill.model.body.ends.pressure != 0 ? n : 0, 0.0);
+}
+
+// Steps between two searches are won with a larger skin, and paid for with pairs to look at in each of them: with u the
+// way of the fastest ball in a step, the sum is least for a skin that goes with sqrt(u r). The factor is measured, see
+// docs/performance.md.
+double best_skin(const RunningMill& mill, double mean_radius) {
+  const double way = std::max(mill.fastest, shell_speed(mill.model)) * mill.model.time_step;
+  return std::clamp(7 * std::sqrt(way * mean_radius), 0.1 * mean_radius, 2 * mean_radius);
+}
+
+}  // namespace
+
+void search_near(RunningMill& mill, bool settled) {
+  const Charge& c = mill.charge;
+  const double radius = mill.model.shell.radius;
+  for (std::size_t i = 0; i < c.size(); ++i)
+    if (!(c.x[i] * c.x[i] + c.y[i] * c.y[i] < radius * radius))
+      left_physics(mill, fmt::format("ball {} is outside the shell", c.id[i]));
+  const double mean = std::accumulate(c.radius.begin(), c.radius.end(), 0.0) / double(c.size());
+  mill.skin = best_skin(mill, mean);
+  mill.grid.fill(c, 2 * mean + mill.skin);
+  if (mill.searches_per_sort > 0 && mill.searches++ % mill.searches_per_sort == 0) sort_by_cell(mill);
+  const std::size_t shares = mill.shares.size();
+  parallel_for(shares, 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t s = begin; s < end; ++s) {
+      Share& share = mill.shares[s];
+      near_balls(mill, share, settled, static_cast<int>(c.size() * s / shares),
+                 static_cast<int>(c.size() * (s + 1) / shares));
+      near_wall(mill, share, settled);
+      open_window(mill, share);
+    }
+  });
+  mill.moved = 0;
+  mill.stale = false;
+}
+
+}  // namespace tumble::sim
