@@ -3,6 +3,7 @@
 #include <tbb/global_control.h>
 #include <tbb/info.h>
 #include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <memory>
@@ -30,7 +31,11 @@ void parallel_for(std::size_t count, std::size_t grain, const std::function<void
     for (std::size_t r = 0; r < ranges; ++r) body(r * grain, std::min(count, (r + 1) * grain));
     return;
   }
-  tbb::parallel_for(std::size_t{0}, ranges, [&](std::size_t r) { body(r * grain, std::min(count, (r + 1) * grain)); });
+  // A thread that waits for the others may not begin another task meanwhile, such as a whole run of a sweep.
+  tbb::this_task_arena::isolate([&] {
+    tbb::parallel_for(std::size_t{0}, ranges,
+                      [&](std::size_t r) { body(r * grain, std::min(count, (r + 1) * grain)); });
+  });
 }
 
 }  // namespace tumble

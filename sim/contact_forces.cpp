@@ -42,43 +42,18 @@ struct Work {
                                    other, 1e3 * overlap, 1e3 * radius / 2));
 }
 
-// The forces of a block, or of one contact, into the sums of the balls.
-template <bool kAtWall>
-void push(Share& s, const int* i, const int* j, int n, const Pushes& p) {
-  double *const fx = s.fx.data(), *const fy = s.fy.data(), *const moment = s.moment.data();
-  for (int k = 0; k < n; ++k) {
-    const int a = i[k] - s.window;
-    if constexpr (kAtWall) {
-      fx[a] += p.fx[k];
-      fy[a] += p.fy[k];
-      moment[a] += p.moment_i[k];
-    } else {
-      const int b = j[k] - s.window;
-      fx[a] -= p.fx[k];
-      fy[a] -= p.fy[k];
-      moment[a] += p.moment_i[k];
-      fx[b] += p.fx[k];
-      fy[b] += p.fy[k];
-      moment[b] += p.moment_j[k];
-    }
-  }
-  if (s.pressure.empty()) return;
-  for (int k = 0; k < n; ++k) {
-    s.pressure[static_cast<std::size_t>(i[k] - s.window)] += p.pressure[k];
-    if constexpr (!kAtWall) s.pressure[static_cast<std::size_t>(j[k] - s.window)] += p.pressure[k];
-  }
-}
+// The forces of a block, or of one contact, into the rows of the balls.
 void push(const Work& w, const int* i, const int* j, int n, const Pushes& p) {
-  w.kind == Kind::kBalls ? push<false>(w.share, i, j, n, p) : push<true>(w.share, i, j, n, p);
+  const ForceView rows{w.share.forces.data(), w.share.window};
+  w.mill.kernels->scatter(p.on_i, i, n, rows);
+  if (w.kind == Kind::kBalls) w.mill.kernels->scatter(p.on_j, j, n, rows);
 }
 
 void push(const Work& w, int i, int j, const Push<double>& p) {
   Pushes one;
-  one.fx[0] = p.fx;
-  one.fy[0] = p.fy;
-  one.moment_i[0] = p.moment_i;
-  one.moment_j[0] = p.moment_j;
-  one.pressure[0] = p.pressure;
+  const double sign = w.kind == Kind::kBalls ? -1 : 1;
+  Lanes<double>::store_rows(one.on_i, sign * p.fx, sign * p.fy, p.moment_i, p.pressure);
+  Lanes<double>::store_rows(one.on_j, p.fx, p.fy, p.moment_j, p.pressure);
   push(w, &i, &j, 1, one);
   w.sums().add({p.normal_loss, p.sliding_loss, p.rolling_loss, p.torque, p.torque_shear});
 }

@@ -4,8 +4,8 @@
 // Sums that come out the same in whatever order: by whatever threads, lanes and lists the terms are found.
 //
 // Every term is rounded to a multiple of one step, so small that nobody feels it and so large that all sums stay below
-// 2^51 steps; there an addition of doubles has nothing to round. Beyond that a sum is as good as any other, but hangs
-// on the order.
+// 2^51 steps; there an addition of doubles has nothing to round. Beyond that a sum is as precise as any other, but
+// hangs on the order.
 namespace tumble::sim {
 
 struct ExactSum {

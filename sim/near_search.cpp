@@ -38,6 +38,8 @@ class Known {
   std::vector<std::uint64_t> keys_;
 };
 
+constexpr int kPairsAtATime = 512;
+
 // Pairs are found from the larger of the two balls, so that a few large ones do not make all the others look far; of
 // equal ones from that which comes first in the grid.
 void near_balls(const RunningMill& mill, Share& share, bool settled, int first, int last) {
@@ -50,27 +52,33 @@ void near_balls(const RunningMill& mill, Share& share, bool settled, int first, 
   near.clear(mill.skin);
   std::optional<Known> known;
   if (!settled) known.emplace(mill, Kind::kBalls);
-  std::vector<int>&found_p = share.hits, &found_q = share.parted;
+  std::vector<int>&found_p = share.found_p, &found_q = share.found_q;
+  std::vector<double>& gap = share.gaps;
+  int found = 0;
+  const auto take_in = [&] {
+    gap.resize(found_p.size());
+    kernels.gaps(view, found_p.data(), found_q.data(), found, gap.data());
+    for (int f = 0; f < found; ++f) {
+      const auto k = static_cast<std::size_t>(f);
+      const int i = grid.balls()[static_cast<std::size_t>(found_p[k])],
+                j = grid.balls()[static_cast<std::size_t>(found_q[k])];
+      if (gap[k] >= 0 || (!settled && !known->has(std::min(i, j), std::max(i, j)))) near.add(i, j, gap[k]);
+    }
+    found = 0;
+  };
   for (int p = first; p < last; ++p) {
     const double radius = view.radius[p];
-    std::size_t found = 0;
     grid.for_ranges(p, 2 * radius + mill.skin, radius > smallest, [&](int from, int to, bool later) {
-      const std::size_t room = found + static_cast<std::size_t>(std::max(0, to - from) + 2 * kMostLanes);
+      const auto room = static_cast<std::size_t>(found + std::max(0, to - from) + 2 * kMostLanes);
       if (room > found_p.size()) {
         found_p.resize(2 * room);
         found_q.resize(2 * room);
       }
-      found += static_cast<std::size_t>(
-          kernels.near_of(view, p, from, to, mill.skin, !later, found_p.data() + found, found_q.data() + found));
+      found += kernels.near_of(view, p, from, to, mill.skin, !later, found_p.data() + found, found_q.data() + found);
     });
-    for (std::size_t f = 0; f < found; ++f) {
-      const int q = found_q[f], i = grid.balls()[static_cast<std::size_t>(p)],
-                j = grid.balls()[static_cast<std::size_t>(q)];
-      const double dx = view.x[q] - view.x[p], dy = view.y[q] - view.y[p], reach = radius + view.radius[q];
-      if (balls_touch(dx, dy, reach) && (settled || known->has(std::min(i, j), std::max(i, j)))) continue;
-      near.add(i, j, std::sqrt(dx * dx + dy * dy) - reach);
-    }
+    if (found >= kPairsAtATime) take_in();
   }
+  take_in();
 }
 
 void near_wall(const RunningMill& mill, Share& share, bool settled) {
@@ -125,9 +133,8 @@ void open_window(const RunningMill& mill, Share& share) {
     }
   }
   share.window = low;
-  const auto n = static_cast<std::size_t>(high - low);
-  for (auto* v : {&share.fx, &share.fy, &share.moment}) v->assign(n, 0.0);
-  share.pressure.assign(mill.model.body.ends.pressure != 0 ? n : 0, 0.0);
+  share.window_size = high - low;
+  share.forces.assign(static_cast<std::size_t>(kRow * (share.window_size + kMostLanes)), 0.0);
 }
 
 // Steps between two searches are won with a larger skin, and paid for with pairs to look at in each of them: with u the

@@ -184,7 +184,8 @@ double longest_settling(const MillModel& model) { return 4 * std::sqrt(4 * model
 Charge settle(const MillModel& model, Charge charge, const Progress& progress) {
   MillModel resting = model;
   resting.speed = 0;
-  RunningMill mill = start_mill(resting, std::move(charge));
+  const int threads = threads_for(charge.size());
+  RunningMill mill = start_mill(resting, std::move(charge), threads);
   double scale = 0;  // sum of m g r [J]
   for (std::size_t i = 0; i < mill.charge.size(); ++i)
     scale += mill.charge.mass[i] * model.gravity * mill.charge.radius[i];

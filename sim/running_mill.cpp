@@ -55,14 +55,11 @@ void take_over(RunningMill& mill, Share& share) {
   for (Share& other : mill.shares) {
     if (&other == &share) continue;
     const int low = std::max(other.window, share.first);
-    const int high = std::min(other.window + static_cast<int>(other.fx.size()), share.last);
-    for (auto column : {&Share::fx, &Share::fy, &Share::moment, &Share::pressure}) {
-      if ((other.*column).empty()) continue;
-      for (int i = low; i < high; ++i) {
-        double& theirs = (other.*column)[static_cast<std::size_t>(i - other.window)];
-        (share.*column)[static_cast<std::size_t>(i - share.window)] += theirs;
-        theirs = 0;
-      }
+    const int high = std::min(other.window + other.window_size, share.last);
+    for (int k = kRow * low; k < kRow * high; ++k) {
+      double& theirs = other.forces[static_cast<std::size_t>(k - kRow * other.window)];
+      share.forces[static_cast<std::size_t>(k - kRow * share.window)] += theirs;
+      theirs = 0;
     }
   }
 }
@@ -134,19 +131,32 @@ void book(RunningMill& mill) {
 
 double shell_speed(const MillModel& m) { return std::abs(m.speed) * (1 + m.ripple.amplitude) * m.shell.radius; }
 
+int threads_for(std::size_t balls) {
+  constexpr std::size_t kBallsPerThread = 4000;
+  return static_cast<int>(
+      std::clamp<std::size_t>(balls / kBallsPerThread, 1, static_cast<std::size_t>(thread_limit())));
+}
+
 ExactSums exact_sums(const MillModel& model, const Charge& charge) {
   const double radius = *std::max_element(charge.radius.begin(), charge.radius.end());
+  const double heaviest = *std::max_element(charge.mass.begin(), charge.mass.end());
   const double mass = std::accumulate(charge.mass.begin(), charge.mass.end(), 0.0);
   const double stiffness = std::max(model.ball.springs.normal_stiffness, model.wall.springs.normal_stiffness);
-  const double force = 8 * stiffness * radius;  // more than bodies can press that overlap by half a radius
+  // More than bodies can press that overlap by half a radius; far more than the heaviest blow and all the weight.
+  const double fall = 2 * std::abs(model.gravity) * 2 * model.shell.radius;
+  const double fast = shell_speed(model) + std::sqrt(fall);
+  const double heavy = fast * std::sqrt(stiffness * heaviest) + mass * std::abs(model.gravity) +
+                       std::abs(model.ball.cohesion.per_radius) * radius;
+  const double force = fast > 0 ? std::min(8 * stiffness * radius, 64 * heavy) : 8 * stiffness * radius;
   const double many = std::max(1.0, double(charge.size()) / 256);
-  const double lifted = mass * std::abs(model.gravity) * model.shell.radius;
+  const double pressed = stiffness * radius * radius / 4 * many, moving = 64 * mass * fast * fast;
+  const double energy = fast > 0 ? std::min(pressed, moving) : pressed;
   ExactSums sums;
   sums.force = exact_up_to(force);
   sums.moment = exact_up_to(force * radius);
   sums.torque = exact_up_to(force * model.shell.radius);
-  sums.loss = exact_up_to(stiffness * radius * radius / 4 * many);
-  sums.energy = exact_up_to(stiffness * radius * radius / 4 * many + 4 * lifted);
+  sums.loss = exact_up_to(energy);
+  sums.energy = exact_up_to(energy + mass * fall);
   sums.mass_moment = exact_up_to(mass * model.shell.radius);
   return sums;
 }
@@ -223,9 +233,7 @@ void advance(RunningMill& mill) {
   for_shares(mill, [&](Share& s) {
     take_over(mill, s);
     s.kick = {};
-    const ForceView force{s.fx.data(), s.fy.data(), s.moment.data(), s.pressure.empty() ? nullptr : s.pressure.data(),
-                          s.window};
-    mill.kernels->kick(balls, terms, mill.exact, force, s.first, s.last, s.kick);
+    mill.kernels->kick(balls, terms, mill.exact, {s.forces.data(), s.window}, s.first, s.last, s.kick);
   });
   book(mill);
 

@@ -46,6 +46,9 @@ struct RunningMill {
   std::vector<double> lifter_cos, lifter_sin;  // of each feature
 };
 
+// Threads that are worth their while in one run of so many balls, out of those that the program may use.
+int threads_for(std::size_t balls);
+
 // Of the shell's circle at its fastest [m/s].
 double shell_speed(const MillModel& model);
 

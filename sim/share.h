@@ -25,8 +25,8 @@ struct Share {
   std::array<NearPairs, kKinds> near;
   std::array<ContactTable, kKinds> touching;
 
-  int window = 0;                                // first ball that the forces below belong to
-  std::vector<double> fx, fy, moment, pressure;  // [N], [N m], [N]; the last only where it is asked for
+  int window = 0, window_size = 0;  // balls that the forces below belong to
+  std::vector<double> forces;       // rows, with room for whole batches of lanes
 
   // Of the last step.
   ContactSums at_balls, at_wall;
@@ -34,7 +34,9 @@ struct Share {
   std::vector<Begun> begun;
   std::vector<Ended> ended;
 
-  std::vector<int> hits, parted;  // work space
+  // Work space.
+  std::vector<int> hits, parted, found_p, found_q;
+  std::vector<double> gaps;
 };
 
 }  // namespace tumble::sim

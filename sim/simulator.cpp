@@ -260,12 +260,13 @@ RunResult simulate(const Config& config, const RunSink& sink, const Checkpoint* 
   const Progress settled = [&](double done) { report(sink.progress, share * done); };
   const Progress turned = [&](double done) { report(sink.progress, share + (1 - share) * done); };
 
+  const int threads = threads_for(balls.size());
   RunState run;
   if (resume) {
-    run.mill = start_mill(model, make_charge(balls));
+    run.mill = start_mill(model, make_charge(balls), threads);
     restore(run, resume->words);
   } else {
-    run.mill = start_mill(model, settle(model, place_loosely(config, model, balls), settled));
+    run.mill = start_mill(model, settle(model, place_loosely(config, model, balls), settled), threads);
   }
   const std::int64_t frames = frame_count(config, model);
   if (sink.setup) sink.setup({config, balls, model.time_step, model.speed, frames, cause_names(model)});

@@ -10,9 +10,9 @@ struct EndsPush {
   Real fx = 0, fy = 0, torque = 0, loss = 0;
 };
 
-// Friction of the ends: a spring vector in the mill's frame, wound back to the limit. Uses up the pressure.
+// Friction of the ends: a spring vector in the mill's frame, wound back to the limit. `pressed`: sum |F_n| [N].
 template <class Real, class Memory>
-EndsPush<Real> ends_push(const Memory& at, const ChargeView& c, const KickTerms& terms, double* pressure, int i,
+EndsPush<Real> ends_push(const Memory& at, const ChargeView& c, const KickTerms& terms, const Real& pressed, int i,
                          const Real& x, const Real& y, const Real& vx, const Real& vy) {
   using std::sqrt;
   const EndWallFriction& ends = terms.body->ends;
@@ -23,11 +23,6 @@ EndsPush<Real> ends_push(const Memory& at, const ChargeView& c, const KickTerms&
   const Real ux = (vx + terms.speed_before * mid_y) * dt, uy = (vy - terms.speed_before * mid_x) * dt;
   const Real end_x = at.load(c.end_x + i), end_y = at.load(c.end_y + i);
   const Real wound_x = end_x + ux * terms.cos + uy * terms.sin, wound_y = end_y + uy * terms.cos - ux * terms.sin;
-  Real pressed = 0;
-  if (pressure) {
-    pressed = at.load(pressure);
-    at.store(pressure, Real(0));
-  }
   const Real most = ends.most_wound(at.load(c.mass + i), terms.gravity, pressed);
   const Real wound = sqrt(wound_x * wound_x + wound_y * wound_y);
   const Real kept = select(wound > most, most / wound, Real(1));

@@ -64,13 +64,14 @@ struct WallPoints {
   alignas(64) double distance[kBlock], nx[kBlock], ny[kBlock];
 };
 
-// What a block of contacts does. Contacts that have come apart push nothing; their memory is as it was.
+// Force and moment on a ball and what presses on it lie in a row: F_x, F_y [N], M [N m], sum |F_n| [N].
+inline constexpr int kRow = 4;
+
+// What a block of contacts does to its balls. Contacts that have come apart push nothing; their memory is as it was.
 struct Pushes {
-  alignas(64) double fx[kBlock], fy[kBlock];  // on ball j; at the wall on ball i [N]
-  alignas(64) double moment_i[kBlock], moment_j[kBlock];
-  alignas(64) double pressure[kBlock];  // |F_n|, of a model that is not plain [N]
-  std::uint64_t parted = 0;             // bit k: contact k has come apart
-  std::uint64_t too_deep = 0;           // bit k: contact k overlaps by more than half a radius
+  alignas(64) double on_i[kRow * kBlock], on_j[kRow * kBlock];
+  std::uint64_t parted = 0;    // bit k: contact k has come apart
+  std::uint64_t too_deep = 0;  // bit k: contact k overlaps by more than half a radius
 };
 
 struct ContactSums {
@@ -102,9 +103,9 @@ struct KickSums {
   void add(const KickSums& s);
 };
 
-// Forces on the balls [first, first + n) of a share, index from `first`.
+// Rows of the balls from `first` on, with room for whole batches of lanes.
 struct ForceView {
-  double *fx, *fy, *moment, *pressure;  // pressure may be nullptr
+  double* rows;
   int first = 0;
 };
 
@@ -122,6 +123,9 @@ struct Kernels {
   // larger than p (`smaller`: strictly) into `out_p`, `out_q`, with room for kMostLanes more; how many.
   int (*near_of)(const GridView&, int p, int first, int last, double skin, bool smaller, int* out_p, int* out_q);
 
+  // Gap between the surfaces of the balls p and q of n pairs; negative, where they touch.
+  void (*gaps)(const GridView&, const int* p, const int* q, int n, double* gap);
+
   // Those of the n pairs (i, j) that touch, into `hits`, with room for kMostLanes more; how many.
   int (*touching_pairs)(const ChargeView&, const int* i, const int* j, int n, int* hits);
   // Likewise, of the balls i that touch the shell's circle.
@@ -135,6 +139,9 @@ struct Kernels {
   void (*plate)(const ContactStep&, const ContactColumns&, int first, int last, Pushes&, ContactSums&);
   void (*lifters)(const ContactStep&, const ContactColumns&, int first, int last, const WallPoints&, Pushes&,
                   ContactSums&);
+
+  // Adds rows to those of the balls `at`.
+  void (*scatter)(const double* rows, const int* at, int n, const ForceView&);
 
   void (*drift)(const ChargeView&, double time_step, int first, int last);
   // Sets the forces back to zero.

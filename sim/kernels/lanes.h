@@ -36,14 +36,32 @@ struct Lanes<double> {
   static bool first(int n) { return n > 0; }
   static double sum(double v) { return v; }
   static double largest(double v) { return v; }
+  // Rows of four numbers, one for each lane, as columns.
+  static void store_rows(double* rows, double a, double b, double c, double d) {
+    rows[0] = a;
+    rows[1] = b;
+    rows[2] = c;
+    rows[3] = d;
+  }
+  static void load_rows(const double* rows, double& a, double& b, double& c, double& d) {
+    a = rows[0];
+    b = rows[1];
+    c = rows[2];
+    d = rows[3];
+  }
 };
 
 // A whole batch of balls in memory, and the last few that do not fill one: the other lanes are read as zeros and left
-// as they are.
+// as they are. Rows that are taken leave zeros.
 template <class Real>
 struct Whole {
-  Real load(const double* p) const { return Lanes<Real>::load(p); }
-  void store(double* p, const Real& v) const { Lanes<Real>::store(p, v); }
+  using L = Lanes<Real>;
+  Real load(const double* p) const { return L::load(p); }
+  void store(double* p, const Real& v) const { L::store(p, v); }
+  void take_rows(double* rows, Real& a, Real& b, Real& c, Real& d) const {
+    L::load_rows(rows, a, b, c, d);
+    L::store_rows(rows, Real(0), Real(0), Real(0), Real(0));
+  }
   const Real& counted(const Real& v) const { return v; }
 };
 template <class Real>
@@ -98,6 +116,59 @@ struct Lanes<xsimd::batch<double, A>> {
 #endif
       return Batch(_mm256_setr_pd(0, 1, 2, 3)) < Batch(static_cast<double>(n));
   }
+  static void store_rows(double* rows, const Batch& a, const Batch& b, const Batch& c, const Batch& d) {
+#ifdef __AVX512F__
+    if constexpr (kSize == 8) {
+      const __m512d ab_even = _mm512_unpacklo_pd(a, b), ab_odd = _mm512_unpackhi_pd(a, b);
+      const __m512d cd_even = _mm512_unpacklo_pd(c, d), cd_odd = _mm512_unpackhi_pd(c, d);
+      const __m512i low = _mm512_setr_epi64(0, 1, 8, 9, 2, 3, 10, 11),
+                    high = _mm512_setr_epi64(4, 5, 12, 13, 6, 7, 14, 15);
+      const __m512d r02 = _mm512_permutex2var_pd(ab_even, low, cd_even),
+                    r13 = _mm512_permutex2var_pd(ab_odd, low, cd_odd);
+      const __m512d r46 = _mm512_permutex2var_pd(ab_even, high, cd_even),
+                    r57 = _mm512_permutex2var_pd(ab_odd, high, cd_odd);
+      _mm512_storeu_pd(rows, _mm512_shuffle_f64x2(r02, r13, 0x44));
+      _mm512_storeu_pd(rows + 8, _mm512_shuffle_f64x2(r02, r13, 0xEE));
+      _mm512_storeu_pd(rows + 16, _mm512_shuffle_f64x2(r46, r57, 0x44));
+      _mm512_storeu_pd(rows + 24, _mm512_shuffle_f64x2(r46, r57, 0xEE));
+    } else
+#endif
+    {
+      const __m256d ab_even = _mm256_unpacklo_pd(a, b), ab_odd = _mm256_unpackhi_pd(a, b);
+      const __m256d cd_even = _mm256_unpacklo_pd(c, d), cd_odd = _mm256_unpackhi_pd(c, d);
+      _mm256_storeu_pd(rows, _mm256_permute2f128_pd(ab_even, cd_even, 0x20));
+      _mm256_storeu_pd(rows + 4, _mm256_permute2f128_pd(ab_odd, cd_odd, 0x20));
+      _mm256_storeu_pd(rows + 8, _mm256_permute2f128_pd(ab_even, cd_even, 0x31));
+      _mm256_storeu_pd(rows + 12, _mm256_permute2f128_pd(ab_odd, cd_odd, 0x31));
+    }
+  }
+  static void load_rows(const double* rows, Batch& a, Batch& b, Batch& c, Batch& d) {
+#ifdef __AVX512F__
+    if constexpr (kSize == 8) {
+      const __m512d r01 = _mm512_loadu_pd(rows), r23 = _mm512_loadu_pd(rows + 8);
+      const __m512d r45 = _mm512_loadu_pd(rows + 16), r67 = _mm512_loadu_pd(rows + 24);
+      const __m512i first = _mm512_setr_epi64(0, 4, 8, 12, 1, 5, 9, 13),
+                    second = _mm512_setr_epi64(2, 6, 10, 14, 3, 7, 11, 15);
+      const __m512d ab_low = _mm512_permutex2var_pd(r01, first, r23), ab_high = _mm512_permutex2var_pd(r45, first, r67);
+      const __m512d cd_low = _mm512_permutex2var_pd(r01, second, r23),
+                    cd_high = _mm512_permutex2var_pd(r45, second, r67);
+      a = _mm512_shuffle_f64x2(ab_low, ab_high, 0x44);
+      b = _mm512_shuffle_f64x2(ab_low, ab_high, 0xEE);
+      c = _mm512_shuffle_f64x2(cd_low, cd_high, 0x44);
+      d = _mm512_shuffle_f64x2(cd_low, cd_high, 0xEE);
+    } else
+#endif
+    {
+      const __m256d r0 = _mm256_loadu_pd(rows), r1 = _mm256_loadu_pd(rows + 4);
+      const __m256d r2 = _mm256_loadu_pd(rows + 8), r3 = _mm256_loadu_pd(rows + 12);
+      const __m256d ac0 = _mm256_unpacklo_pd(r0, r1), bd0 = _mm256_unpackhi_pd(r0, r1);
+      const __m256d ac1 = _mm256_unpacklo_pd(r2, r3), bd1 = _mm256_unpackhi_pd(r2, r3);
+      a = _mm256_permute2f128_pd(ac0, ac1, 0x20);
+      b = _mm256_permute2f128_pd(bd0, bd1, 0x20);
+      c = _mm256_permute2f128_pd(ac0, ac1, 0x31);
+      d = _mm256_permute2f128_pd(bd0, bd1, 0x31);
+    }
+  }
   // Of numbers that add up exactly, so in any order.
   static double sum(const Batch& v) {
     alignas(64) double all[kSize];
@@ -129,6 +200,13 @@ struct Rest<xsimd::batch<double, A>> {
   Batch load(const double* p) const { return _mm256_maskload_pd(p, _mm256_castpd_si256(mask)); }
   void store(double* p, const Batch& v) const { _mm256_maskstore_pd(p, _mm256_castpd_si256(mask), v); }
 #endif
+  // What follows belongs to other balls, and maybe to another thread.
+  void take_rows(double* rows, Batch& a, Batch& b, Batch& c, Batch& d) const {
+    alignas(64) double mine[4 * L::kSize] = {};
+    for (int k = 0; k < 4 * n; ++k) mine[k] = rows[k];
+    for (int k = 0; k < 4 * n; ++k) rows[k] = 0;
+    L::load_rows(mine, a, b, c, d);
+  }
   Batch counted(const Batch& v) const { return select(mask, v, Batch(0)); }
 };
 #endif

@@ -70,6 +70,15 @@ struct Loops {
     return found;
   }
 
+  [[gnu::flatten]] static void gaps(const GridView& g, const int* p, const int* q, int n, double* gap) {
+    using std::sqrt;
+    for (int k = 0; k < n; k += L::kSize) {
+      const Real dx = L::gather(g.x, q + k) - L::gather(g.x, p + k), dy = L::gather(g.y, q + k) - L::gather(g.y, p + k);
+      const Real reach = L::gather(g.radius, p + k) + L::gather(g.radius, q + k);
+      L::store(gap + k, select(balls_touch(dx, dy, reach), Real(-1), sqrt(dx * dx + dy * dy) - reach));
+    }
+  }
+
   // Those of n for which the mask of `touches(k)` is set.
   template <class Touches>
   static int hits_of(int n, int* hits, const Touches& touches) {
@@ -101,7 +110,7 @@ struct Loops {
   }
 
   // `meet(k)`: how contact k meets; `push_of` what follows from the reaction.
-  template <bool kPlain, class Meet, class PushOf>
+  template <bool kPlain, bool kAtWall, class Meet, class PushOf>
   static void block(const ContactModel& law, double time_step, const ContactColumns& columns, int first, int last,
                     Pushes& out, ContactSums& sums, const Meet& meet, const PushOf& push_of) {
     Real normal = 0, sliding = 0, rolling = 0, torque = 0, shear = 0;
@@ -114,18 +123,17 @@ struct Loops {
       const int b = k % kBlock;
       touching |= std::uint64_t{L::bits(goes_on)} << b;
       too_deep |= std::uint64_t{L::bits(goes_on & m.too_deep)} << b;
-      L::store(out.fx + b, or_zero(goes_on, p.fx));
-      L::store(out.fy + b, or_zero(goes_on, p.fy));
-      L::store(out.moment_i + b, or_zero(goes_on, p.moment_i));
-      L::store(out.moment_j + b, or_zero(goes_on, p.moment_j));
+      const Real fx = or_zero(goes_on, p.fx), fy = or_zero(goes_on, p.fy), pressure = or_zero(goes_on, p.pressure);
+      const Real on_i_x = kAtWall ? fx : -fx, on_i_y = kAtWall ? fy : -fy;
+      L::store_rows(out.on_i + kRow * b, on_i_x, on_i_y, or_zero(goes_on, p.moment_i), pressure);
+      if constexpr (!kAtWall) L::store_rows(out.on_j + kRow * b, fx, fy, or_zero(goes_on, p.moment_j), pressure);
       normal += or_zero(goes_on, p.normal_loss);
       sliding += or_zero(goes_on, p.sliding_loss);
-      torque += or_zero(goes_on, p.torque);
-      shear += or_zero(goes_on, p.torque_shear);
-      if constexpr (!kPlain) {
-        L::store(out.pressure + b, or_zero(goes_on, p.pressure));
-        rolling += or_zero(goes_on, p.rolling_loss);
+      if constexpr (kAtWall) {
+        torque += or_zero(goes_on, p.torque);
+        shear += or_zero(goes_on, p.torque_shear);
       }
+      if constexpr (!kPlain) rolling += or_zero(goes_on, p.rolling_loss);
     }
     const int n = last - first;
     const std::uint64_t all = n == kBlock ? ~std::uint64_t{0} : (std::uint64_t{1} << n) - 1;
@@ -137,7 +145,7 @@ struct Loops {
   template <bool kPlain>
   [[gnu::flatten]] static void balls_by(const ContactStep& step, const ContactColumns& columns, int first, int last,
                                         Pushes& out, ContactSums& sums) {
-    block<kPlain>(
+    block<kPlain, false>(
         *step.law, step.time_step, columns, first, last, out, sums,
         [&](int k) { return balls_meet<Real, kPlain>(*step.balls, columns.i + k, columns.j + k, step.time_step); },
         [&](const Meeting<Real>& m, const BasicReaction<Real>& r) { return push_of_balls(m, r, *step.exact); });
@@ -151,7 +159,7 @@ struct Loops {
   template <bool kPlain, class Point>
   [[gnu::flatten]] static void wall_by(const ContactStep& step, const ContactColumns& columns, int first, int last,
                                        Pushes& out, ContactSums& sums, const Point& point) {
-    block<kPlain>(
+    block<kPlain, true>(
         *step.law, step.time_step, columns, first, last, out, sums,
         [&](int k) {
           const NearestPoint<Real> at = point(k);
@@ -188,6 +196,14 @@ struct Loops {
       });
   }
 
+  static void scatter(const double* rows, const int* at, int n, const ForceView& force) {
+    // Said to the compiler, which does not see it by itself: a row goes as one.
+    typedef double Row __attribute__((vector_size(kRow * sizeof(double)), aligned(sizeof(double)), may_alias));
+    const Row* from = reinterpret_cast<const Row*>(rows);
+    Row* sums = reinterpret_cast<Row*>(force.rows);
+    for (int k = 0; k < n; ++k) sums[at[k] - force.first] += from[k];
+  }
+
   [[gnu::flatten]] static void drift(const ChargeView& c, double time_step, int first, int last) {
     over_balls<Real>(first, last, [&](int i, const auto& at) {
       at.store(c.x + i, at.load(c.x + i) + at.load(c.vx + i) * time_step);
@@ -204,17 +220,14 @@ struct Loops {
     Real fastest2 = 0, squares = 0, mass_moment = 0;
     Real ends_torque = 0, ends_loss = 0, drag_loss = 0, pool_loss = 0, external = 0;
     over_balls<Real>(first, last, [&](int i, const auto& at) {
-      const int f = i - force.first;
+      double* rows = force.rows + kRow * (i - force.first);
       const Real x = at.load(c.x + i), y = at.load(c.y + i);
       Real vx = at.load(c.vx + i), vy = at.load(c.vy + i), spin = at.load(c.spin + i);
-      const Real pushed_x = at.load(force.fx + f), pushed_y = at.load(force.fy + f), turned = at.load(force.moment + f);
-      at.store(force.fx + f, Real(0));
-      at.store(force.fy + f, Real(0));
-      at.store(force.moment + f, Real(0));
+      Real pushed_x = 0, pushed_y = 0, turned = 0, pressed = 0;
+      at.take_rows(rows, pushed_x, pushed_y, turned, pressed);
       Real own_x = 0, own_y = 0, couple = 0;
       if constexpr (kEnds) {
-        const EndsPush<Real> p =
-            ends_push<Real>(at, c, terms, force.pressure ? force.pressure + f : nullptr, i, x, y, vx, vy);
+        const EndsPush<Real> p = ends_push<Real>(at, c, terms, pressed, i, x, y, vx, vy);
         own_x += p.fx;
         own_y += p.fy;
         ends_torque += at.counted(exact.torque(p.torque));
@@ -269,8 +282,8 @@ struct Loops {
 template <class Real>
 constexpr Kernels kernels_of(const char* name) {
   using Loop = Loops<Real>;
-  return {name,        Loop::near_of, Loop::touching_pairs, Loop::touching_plate, Loop::touching_lifters,
-          Loop::balls, Loop::plate,   Loop::lifters,        Loop::drift,          Loop::kick};
+  return {name,        Loop::near_of, Loop::gaps,    Loop::touching_pairs, Loop::touching_plate, Loop::touching_lifters,
+          Loop::balls, Loop::plate,   Loop::lifters, Loop::scatter,        Loop::drift,          Loop::kick};
 }
 
 }  // namespace tumble::sim

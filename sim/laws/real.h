@@ -21,16 +21,18 @@ struct PowerOfTwo {
   }
 };
 
-// exp(-u) for u >= 0, to the last but one bit: 2^-n exp(-r), with the Taylor series for |r| <= ln 2 / 2.
+// exp(-u) for u >= 0, to 3e-16 of it: 2^-n exp(-r), with the Taylor series for |r| <= ln 2 / 2, its even and odd terms
+// apart.
 template <class Real>
 Real decay(const Real& u) {
   constexpr double kLn2High = 6.93147180369123816490e-01, kLn2Low = 1.90821492927058770002e-10;
   const Real within = select(u < Real(700), u, Real(700));
   const Real n = (within * 1.4426950408889634 + kWholeNumbers) - kWholeNumbers;
-  const Real r = (within - n * kLn2High) - n * kLn2Low;
-  Real sum = 1;
-  for (int k = 14; k > 0; --k) sum = 1 - sum * r * (1.0 / k);
-  return sum * PowerOfTwo<Real>::of(-n);
+  const Real r = (within - n * kLn2High) - n * kLn2Low, r2 = r * r;
+  Real even = 1.0 / 479001600, odd = 1.0 / 6227020800;  // 12!, 13!
+  for (const double c : {1.0 / 3628800, 1.0 / 40320, 1.0 / 720, 1.0 / 24, 1.0 / 2, 1.0}) even = even * r2 + c;
+  for (const double c : {1.0 / 39916800, 1.0 / 362880, 1.0 / 5040, 1.0 / 120, 1.0 / 6, 1.0}) odd = odd * r2 + c;
+  return (even - odd * r) * PowerOfTwo<Real>::of(-n);
 }
 
 }  // namespace tumble::sim
