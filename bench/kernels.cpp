@@ -4,6 +4,7 @@
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
+#include <bit>
 #include <numeric>
 #include <string>
 #include <vector>
@@ -59,19 +60,22 @@ struct Scene {
             c.end_x.data(),
             c.end_y.data(),
             mill.flights.apex.data()};
-    rows.resize((c.size() + kMostLanes) * kRow);
+    const auto room = std::bit_ceil(c.size() + kMostLanes);
+    rows.resize(room * kRow);
+    forces = {rows.data(), static_cast<int>(room) - 1};
   }
   ContactStep step(const ContactModel& law) const {
     return {&law,         &view, &mill.exact, mill.model.time_step, {mill.model.shell.radius, mill.model.speed, 0},
             &mill.lifters};
   }
-  ContactTable& touching(Kind kind) { return mill.shares[0].touching[static_cast<std::size_t>(kind)]; }
-  NearPairs& near(Kind kind) { return mill.shares[0].near[static_cast<std::size_t>(kind)]; }
+  ContactTable& touching(Kind kind) { return mill.patches[0].touching[static_cast<std::size_t>(kind)]; }
+  NearPairs& near(Kind kind) { return mill.patches[0].near[static_cast<std::size_t>(kind)]; }
   int balls() const { return static_cast<int>(mill.charge.size()); }
 
   RunningMill mill;
   ChargeView view{};
   std::vector<double> rows;
+  ForceView forces{};
 };
 
 const RunningMill& plain_mill() {
@@ -207,7 +211,7 @@ void scatter_contacts(benchmark::State& state, const Kernels& kernels) {
   for ([[maybe_unused]] auto _ : state)
     for (int k = 0; k < table.size(); k += kBlock)
       for (const int* at : {table.i.data(), table.j.data()})
-        kernels.scatter(pushes.data(), at + k, std::min(kBlock, table.size() - k), {s.rows.data(), 0});
+        kernels.scatter(pushes.data(), at + k, std::min(kBlock, table.size() - k), s.forces);
   count(state, table.size());
 }
 
@@ -227,7 +231,7 @@ void kick_balls(benchmark::State& state, const Kernels& kernels) {
   const KickTerms terms{.body = &s.mill.model.body, .time_step = s.mill.model.time_step, .gravity = 0};
   KickSums sums;
   for ([[maybe_unused]] auto _ : state) {
-    kernels.kick(s.view, terms, s.mill.exact, {s.rows.data(), 0}, 0, s.balls(), sums);
+    kernels.kick(s.view, terms, s.mill.exact, s.forces, 0, s.balls(), sums);
     benchmark::DoNotOptimize(sums);
   }
   count(state, s.balls());

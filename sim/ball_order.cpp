@@ -26,44 +26,49 @@ void move_balls(RunningMill& mill, const std::vector<int>& order) {
 
   std::vector<int> place(order.size());
   for (std::size_t p = 0; p < order.size(); ++p) place[static_cast<std::size_t>(order[p])] = static_cast<int>(p);
-  for (Share& share : mill.shares)
-    for (int kind = 0; kind < kKinds; ++kind) {
-      ContactTable& table = share.touching[static_cast<std::size_t>(kind)];
-      for (int k = 0; k < table.size(); ++k) {
-        int& i = table.i[static_cast<std::size_t>(k)];
-        i = place[static_cast<std::size_t>(i)];
-        if (kind != static_cast<int>(Kind::kBalls)) continue;
-        int& j = table.j[static_cast<std::size_t>(k)];
-        j = place[static_cast<std::size_t>(j)];
+  for_shares(mill, [&](Share& share) {
+    for (int p = share.first; p < share.last; ++p)
+      for (int kind = 0; kind < kKinds; ++kind) {
+        ContactTable& table = mill.patches[static_cast<std::size_t>(p)].touching[static_cast<std::size_t>(kind)];
+        for (int k = 0; k < table.size(); ++k) {
+          int& i = table.i[static_cast<std::size_t>(k)];
+          i = place[static_cast<std::size_t>(i)];
+          if (kind != static_cast<int>(Kind::kBalls)) continue;
+          int& j = table.j[static_cast<std::size_t>(k)];
+          j = place[static_cast<std::size_t>(j)];
+        }
       }
-    }
+  });
   mill.stale = true;
 }
 
-// All contacts of a kind by their ball i, as many to each share.
+// Every contact to the patch of its ball i.
 void deal_out(RunningMill& mill, Kind kind) {
   const auto of_kind = static_cast<std::size_t>(kind);
-  std::vector<int> start(mill.charge.size() + 1, 0);
-  int count = 0;
-  for (const Share& share : mill.shares) {
-    const ContactTable& table = share.touching[of_kind];
-    for (int k = 0; k < table.size(); ++k) ++start[static_cast<std::size_t>(table.i[static_cast<std::size_t>(k)]) + 1];
-    count += table.size();
-  }
-  for (std::size_t i = 1; i < start.size(); ++i) start[i] += start[i - 1];
-  std::vector<Contact> contacts(static_cast<std::size_t>(count));
-  for (Share& share : mill.shares) {
-    ContactTable& table = share.touching[of_kind];
-    for (int k = 0; k < table.size(); ++k) {
-      const Contact c = contact_at(table, k);
-      contacts[static_cast<std::size_t>(start[static_cast<std::size_t>(c.i)]++)] = c;
+  for (std::size_t p = 0; p < mill.patches.size(); ++p) {
+    ContactTable& table = mill.patches[p].touching[of_kind];
+    for (int k = table.size() - 1; k >= 0; --k) {
+      std::size_t home = p;
+      const int i = table.i[static_cast<std::size_t>(k)];
+      while (i < mill.patches[home].first) --home;
+      while (i >= mill.patches[home].last) ++home;
+      if (home == p) continue;
+      add(mill.patches[home].touching[of_kind], contact_at(table, k), kind, mill.model.plain());
+      remove(table, k);
     }
-    table.count = 0;
   }
-  const std::size_t shares = mill.shares.size();
-  for (std::size_t s = 0; s < shares; ++s)
-    for (std::size_t k = contacts.size() * s / shares; k < contacts.size() * (s + 1) / shares; ++k)
-      add(mill.shares[s].touching[of_kind], contacts[k], kind, mill.model.plain());
+}
+
+// The contacts of a patch by their ball i.
+void sort_contacts(const Patch& patch, ContactTable& table, Share& space) {
+  std::vector<int>& start = space.start;
+  start.assign(static_cast<std::size_t>(patch.last - patch.first + 1), 0);
+  const auto of = [&](int k) { return static_cast<std::size_t>(table.i[static_cast<std::size_t>(k)] - patch.first); };
+  for (int k = 0; k < table.size(); ++k) ++start[of(k) + 1];
+  for (std::size_t i = 1; i < start.size(); ++i) start[i] += start[i - 1];
+  space.sorted.resize(static_cast<std::size_t>(table.size()));
+  for (int k = 0; k < table.size(); ++k) space.sorted[static_cast<std::size_t>(start[of(k)]++)] = contact_at(table, k);
+  for (int k = 0; k < table.size(); ++k) set(table, k, space.sorted[static_cast<std::size_t>(k)]);
 }
 
 }  // namespace
@@ -71,6 +76,12 @@ void deal_out(RunningMill& mill, Kind kind) {
 void sort_by_cell(RunningMill& mill) {
   move_balls(mill, mill.grid.balls());
   for (const Kind kind : {Kind::kBalls, Kind::kPlate, Kind::kLifters}) deal_out(mill, kind);
+  for_shares(mill, [&](Share& share) {
+    for (int p = share.first; p < share.last; ++p) {
+      Patch& patch = mill.patches[static_cast<std::size_t>(p)];
+      for (ContactTable& table : patch.touching) sort_contacts(patch, table, share);
+    }
+  });
   mill.grid.number_afresh();
 }
 

@@ -5,8 +5,8 @@
 // sooner.
 namespace tumble::sim {
 
-// Puts the balls and the contacts in the order of the grid, as it has just been filled, and deals the contacts out
-// evenly. Near pairs must be searched for afterwards.
+// Puts the balls and the contacts in the order of the grid, as it has just been filled. Near pairs must be searched for
+// afterwards.
 void sort_by_cell(RunningMill& mill);
 
 // Ball number k at place k.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "sim/kernels/meeting.h"
 
@@ -15,14 +16,15 @@ namespace {
 struct Work {
   const RunningMill& mill;
   const ChargeView& balls;
+  Patch& patch;
   Share& share;
   Kind kind;
   ContactStep step;
   ShellPose pose;
 
   bool plain() const { return mill.model.plain(); }
-  ContactTable& table() const { return share.touching[static_cast<std::size_t>(kind)]; }
-  NearPairs& near() const { return share.near[static_cast<std::size_t>(kind)]; }
+  ContactTable& table() const { return patch.touching[static_cast<std::size_t>(kind)]; }
+  NearPairs& near() const { return patch.near[static_cast<std::size_t>(kind)]; }
   ContactSums& sums() const { return kind == Kind::kBalls ? share.at_balls : share.at_wall; }
 };
 
@@ -44,7 +46,7 @@ struct Work {
 
 // The forces of a block, or of one contact, into the rows of the balls.
 void push(const Work& w, const int* i, const int* j, int n, const Pushes& p) {
-  const ForceView rows{w.share.forces.data(), w.share.window};
+  const ForceView rows{w.share.forces.data(), w.share.mask};
   w.mill.kernels->scatter(p.on_i, i, n, rows);
   if (w.kind == Kind::kBalls) w.mill.kernels->scatter(p.on_j, j, n, rows);
 }
@@ -193,11 +195,13 @@ void contacts(const Work& w) {
   end_parted(w);
 }
 
-// A flight ends with the first contact and begins with the loss of the last one.
+// A flight ends with the first contact and begins with the loss of the last one. In between there is no apex to raise.
 void land(RunningMill& mill, int ball) {
   const auto i = static_cast<std::size_t>(ball);
-  if (mill.flights.contacts[i]++ > 0 || !mill.ledger.counting_impacts) return;
+  if (mill.flights.contacts[i]++ > 0) return;
   const double height = mill.flights.apex[i] - mill.charge.y[i];
+  mill.flights.apex[i] = std::numeric_limits<double>::max();
+  if (!mill.ledger.counting_impacts) return;
   const int bin = static_cast<int>(kFallBins * height / (2 * mill.model.shell.radius));
   mill.ledger.impacts.falls[static_cast<std::size_t>(std::clamp(bin, 0, kFallBins - 1))] += 1;
 }
@@ -224,19 +228,16 @@ void count_impact(RunningMill& mill, const Ended& e) {
 
 }  // namespace
 
-void contact_forces(const RunningMill& mill, const ChargeView& balls, Share& share) {
+void contact_forces(const RunningMill& mill, const ChargeView& balls, Patch& patch, Share& share) {
   const MillModel& m = mill.model;
-  share.at_balls = share.at_wall = {};
-  share.begun.clear();
-  share.ended.clear();
   const ShellPose pose = pose_of(mill_angle(m, mill.step));
   const double speed = mill_speed(m, mill.step), speed_before = mill_speed_before(m, mill.step);
   const ContactStep between{&m.ball, &balls, &mill.exact, m.time_step, {}, nullptr};
   const ContactStep at_wall{
       &m.wall, &balls, &mill.exact, m.time_step, {m.shell.radius, speed_before, speed - speed_before}, &mill.lifters};
-  contacts({mill, balls, share, Kind::kBalls, between, pose});
-  contacts({mill, balls, share, Kind::kPlate, at_wall, pose});
-  contacts({mill, balls, share, Kind::kLifters, at_wall, pose});
+  contacts({mill, balls, patch, share, Kind::kBalls, between, pose});
+  contacts({mill, balls, patch, share, Kind::kPlate, at_wall, pose});
+  contacts({mill, balls, patch, share, Kind::kLifters, at_wall, pose});
 }
 
 void book_events(RunningMill& mill) {

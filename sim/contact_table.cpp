@@ -5,46 +5,47 @@
 namespace tumble::sim {
 namespace {
 
-constexpr std::array kPlainColumns{&ContactTable::damping, &ContactTable::overlap,     &ContactTable::dashpot,
-                                   &ContactTable::spring,  &ContactTable::normal_lost, &ContactTable::sliding_lost};
-constexpr std::array kTermColumns{&ContactTable::force, &ContactTable::stored, &ContactTable::term_damping,
-                                  &ContactTable::roll};
+// No more than asked for: vectors by themselves double.
+template <class Column>
+void widen(Column& column, std::size_t room) {
+  column.reserve(room);
+  column.resize(room);
+}
 
-template <class Visit>
-void for_columns(ContactTable& table, bool terms, bool place, const Visit& visit) {
-  visit(table.i);
-  visit(table.j);
-  for (const auto column : kPlainColumns) visit(table.*column);
-  if (terms)
-    for (const auto column : kTermColumns) visit(table.*column);
-  if (place) visit(table.place);
+std::size_t place_of(const ContactTable& t, int k) {
+  return static_cast<std::size_t>(k / kGroup * kGroup * t.columns + k % kGroup);
 }
 
 }  // namespace
 
-void add(ContactTable& table, const Contact& contact, Kind kind, bool plain) {
-  if (table.size() == static_cast<int>(table.i.size())) {
-    const std::size_t room = table.i.size() + std::max<std::size_t>(1, table.i.size() / kBlock / 2) * kBlock;
-    for_columns(table, !plain, kind != Kind::kBalls, [&](auto& column) { column.resize(room); });
+void add(ContactTable& t, const Contact& contact, Kind kind, bool plain) {
+  if (t.size() == static_cast<int>(t.i.size())) {
+    const std::size_t room = t.i.size() + std::max<std::size_t>(1, t.i.size() / kBlock / 8) * kBlock;
+    t.columns = plain ? kPlainColumns : kAllColumns;
+    widen(t.i, room);
+    widen(t.j, room);
+    widen(t.numbers, room * static_cast<std::size_t>(t.columns));
+    if (kind != Kind::kBalls) widen(t.place, room);
   }
-  set(table, table.count++, contact);
+  set(t, t.count++, contact);
 }
 
 void set(ContactTable& t, int at, const Contact& c) {
   const auto k = static_cast<std::size_t>(at);
   t.i[k] = c.i;
   t.j[k] = c.j;
-  t.damping[k] = c.damping;
-  t.overlap[k] = c.state.overlap;
-  t.dashpot[k] = c.state.dashpot;
-  t.spring[k] = c.state.spring;
-  t.normal_lost[k] = c.state.normal_lost;
-  t.sliding_lost[k] = c.state.sliding_lost;
-  if (!t.force.empty()) {
-    t.force[k] = c.terms.force;
-    t.stored[k] = c.terms.stored;
-    t.term_damping[k] = c.terms.damping;
-    t.roll[k] = c.terms.roll;
+  double* number = t.numbers.data() + place_of(t, at);
+  number[kGroup * kDamping] = c.damping;
+  number[kGroup * kOverlap] = c.state.overlap;
+  number[kGroup * kDashpot] = c.state.dashpot;
+  number[kGroup * kSpring] = c.state.spring;
+  number[kGroup * kNormalLost] = c.state.normal_lost;
+  number[kGroup * kSlidingLost] = c.state.sliding_lost;
+  if (t.columns == kAllColumns) {
+    number[kGroup * kForce] = c.terms.force;
+    number[kGroup * kStored] = c.terms.stored;
+    number[kGroup * kTermDamping] = c.terms.damping;
+    number[kGroup * kRoll] = c.terms.roll;
   }
   if (!t.place.empty()) t.place[k] = c.place;
 }
@@ -56,19 +57,20 @@ void remove(ContactTable& table, int k) {
 
 Contact contact_at(const ContactTable& t, int at) {
   const auto k = static_cast<std::size_t>(at);
-  Contact c{t.i[k],       t.j[k],
-            t.damping[k], {t.overlap[k], t.dashpot[k], t.spring[k], t.normal_lost[k], t.sliding_lost[k]},
-            {},           0};
-  if (!t.force.empty()) c.terms = {t.force[k], t.stored[k], t.term_damping[k], t.roll[k]};
+  const double* number = t.numbers.data() + place_of(t, at);
+  Contact c;
+  c.i = t.i[k];
+  c.j = t.j[k];
+  c.damping = number[kGroup * kDamping];
+  c.state = {number[kGroup * kOverlap], number[kGroup * kDashpot], number[kGroup * kSpring],
+             number[kGroup * kNormalLost], number[kGroup * kSlidingLost]};
+  if (t.columns == kAllColumns)
+    c.terms = {number[kGroup * kForce], number[kGroup * kStored], number[kGroup * kTermDamping],
+               number[kGroup * kRoll]};
   if (!t.place.empty()) c.place = t.place[k];
   return c;
 }
 
-ContactColumns columns_of(ContactTable& t) {
-  const auto term = [](std::vector<double>& column) { return column.empty() ? nullptr : column.data(); };
-  return {t.i.data(),      t.j.data(),           t.overlap.data(),      t.dashpot.data(),
-          t.spring.data(), t.normal_lost.data(), t.sliding_lost.data(), t.damping.data(),
-          term(t.force),   term(t.stored),       term(t.term_damping),  term(t.roll)};
-}
+ContactColumns columns_of(ContactTable& t) { return {t.i.data(), t.j.data(), t.numbers.data(), t.columns}; }
 
 }  // namespace tumble::sim

@@ -1,5 +1,6 @@
 #pragma once
-#include <array>
+#include <tbb/cache_aligned_allocator.h>
+
 #include <cstdint>
 #include <vector>
 
@@ -20,14 +21,14 @@ struct Contact {
   std::uint16_t place = 0;  // at the wall: of the first touch, face x kAngleBins + angle bin
 };
 
-// The pairs that touched at the last step, a structure of arrays with room for whole batches of lanes. Their order
-// means nothing.
+// The pairs that touched at the last step, with room for whole batches of lanes. Their order means nothing. See
+// ContactColumns for how the numbers lie.
 struct ContactTable {
   int count = 0;
   std::vector<int> i, j;
-  std::vector<double> damping, overlap, dashpot, spring, normal_lost, sliding_lost;
-  std::vector<double> force, stored, term_damping, roll;  // of a model that is not plain, else empty
-  std::vector<std::uint16_t> place;                       // at the wall, else empty
+  std::vector<double, tbb::cache_aligned_allocator<double>> numbers;
+  std::vector<std::uint16_t> place;  // at the wall, else empty
+  int columns = kPlainColumns;
 
   int size() const { return count; }
 };

@@ -3,12 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <numeric>
-#include <optional>
 
-#include "core/parallel_for.h"
 #include "sim/ball_order.h"
 #include "sim/kernels/meeting.h"
 
@@ -19,8 +18,8 @@ namespace {
 class Known {
  public:
   Known(const RunningMill& mill, Kind kind) {
-    for (const Share& share : mill.shares) {
-      const ContactTable& table = share.touching[static_cast<std::size_t>(kind)];
+    for (const Patch& patch : mill.patches) {
+      const ContactTable& table = patch.touching[static_cast<std::size_t>(kind)];
       for (int k = 0; k < table.size(); ++k) {
         std::pair<int, int> pair(table.i[k], table.j[k]);
         if (kind == Kind::kBalls) pair = std::minmax(pair.first, pair.second);
@@ -41,17 +40,14 @@ class Known {
 constexpr int kPairsAtATime = 512;
 
 // Pairs are found from the larger of the two balls, so that a few large ones do not make all the others look far; of
-// equal ones from that which comes first in the grid.
-void near_balls(const RunningMill& mill, Share& share, bool settled, int first, int last) {
-  const Charge& c = mill.charge;
+// equal ones from that which comes first in the grid. `known`: contacts that there are already; null, where all that
+// touches is one.
+void near_balls(const RunningMill& mill, Patch& patch, Share& share, double smallest, const Known* known) {
   const CellGrid& grid = mill.grid;
   const GridView view{grid.x(), grid.y(), grid.radius()};
   const Kernels& kernels = *mill.kernels;
-  const double smallest = *std::min_element(c.radius.begin(), c.radius.end());
-  NearPairs& near = share.near[static_cast<std::size_t>(Kind::kBalls)];
+  NearPairs& near = patch.near[static_cast<std::size_t>(Kind::kBalls)];
   near.clear(mill.skin);
-  std::optional<Known> known;
-  if (!settled) known.emplace(mill, Kind::kBalls);
   std::vector<int>&found_p = share.found_p, &found_q = share.found_q;
   std::vector<double>& gap = share.gaps;
   int found = 0;
@@ -62,11 +58,11 @@ void near_balls(const RunningMill& mill, Share& share, bool settled, int first, 
       const auto k = static_cast<std::size_t>(f);
       const int i = grid.balls()[static_cast<std::size_t>(found_p[k])],
                 j = grid.balls()[static_cast<std::size_t>(found_q[k])];
-      if (gap[k] >= 0 || (!settled && !known->has(std::min(i, j), std::max(i, j)))) near.add(i, j, gap[k]);
+      if (gap[k] >= 0 || (known && !known->has(std::min(i, j), std::max(i, j)))) near.add(i, j, gap[k]);
     }
     found = 0;
   };
-  for (int p = first; p < last; ++p) {
+  for (int p = patch.first; p < patch.last; ++p) {
     const double radius = view.radius[p];
     grid.for_ranges(p, 2 * radius + mill.skin, radius > smallest, [&](int from, int to, bool later) {
       const auto room = static_cast<std::size_t>(found + std::max(0, to - from) + 2 * kMostLanes);
@@ -81,21 +77,16 @@ void near_balls(const RunningMill& mill, Share& share, bool settled, int first, 
   take_in();
 }
 
-void near_wall(const RunningMill& mill, Share& share, bool settled) {
+void near_wall(const RunningMill& mill, Patch& patch, const Known* known_plate, const Known* known_lifters) {
   const Charge& c = mill.charge;
   const Shell& shell = mill.model.shell;
-  NearPairs& plate = share.near[static_cast<std::size_t>(Kind::kPlate)];
-  NearPairs& lifters = share.near[static_cast<std::size_t>(Kind::kLifters)];
+  NearPairs& plate = patch.near[static_cast<std::size_t>(Kind::kPlate)];
+  NearPairs& lifters = patch.near[static_cast<std::size_t>(Kind::kLifters)];
   plate.clear(mill.skin);
   lifters.clear(mill.skin);
-  std::optional<Known> known_plate, known_lifters;
-  if (!settled) {
-    known_plate.emplace(mill, Kind::kPlate);
-    known_lifters.emplace(mill, Kind::kLifters);
-  }
   const ShellPose pose = pose_of(mill_angle(mill.model, mill.step));
   std::vector<NearFeature> found;
-  for (int i = share.first; i < share.last; ++i) {
+  for (int i = patch.first; i < patch.last; ++i) {
     const double x = c.x[i], y = c.y[i], radius = c.radius[i];
     const double inside = shell.tip_radius - radius - mill.skin;
     if (inside > 0 && x * x + y * y < inside * inside) continue;
@@ -105,36 +96,74 @@ void near_wall(const RunningMill& mill, Share& share, bool settled) {
       const bool is_plate = f.feature == 0;
       if (f.distance < radius) {
         const bool touches = nearest_on_wall(shell, pose, f.feature, x, y).distance < radius;
-        if (touches && (settled || (is_plate ? known_plate : known_lifters)->has(i, f.feature))) continue;
+        const Known* known = is_plate ? known_plate : known_lifters;
+        if (touches && (!known || known->has(i, f.feature))) continue;
       }
       (is_plate ? plate : lifters).add(i, f.feature, f.distance - radius);
     }
   }
 }
 
-// The window of balls that the share's forces can fall on.
-void open_window(const RunningMill& mill, Share& share) {
-  int low = share.first, high = share.last;
+// The balls that the patch's contacts can reach until the next search.
+void find_reach(Patch& patch) {
+  int low = patch.first, high = patch.last;
   const auto widen = [&](const std::vector<int>& balls, int count) {
     for (int k = 0; k < count; ++k) {
       low = std::min(low, balls[static_cast<std::size_t>(k)]);
       high = std::max(high, balls[static_cast<std::size_t>(k)] + 1);
     }
   };
-  if (mill.shares.size() > 1) {
-    for (int kind = 0; kind < kKinds; ++kind) {
-      const auto k = static_cast<std::size_t>(kind);
-      for (const NearPairs::Tier& t : share.near[k].tiers) {
-        widen(t.i, t.count);
-        if (kind == 0) widen(t.j, t.count);
-      }
-      widen(share.touching[k].i, share.touching[k].count);
-      if (kind == 0) widen(share.touching[k].j, share.touching[k].count);
+  for (int kind = 0; kind < kKinds; ++kind) {
+    const auto k = static_cast<std::size_t>(kind);
+    const bool balls = kind == static_cast<int>(Kind::kBalls);
+    for (const NearPairs::Tier& t : patch.near[k].tiers) {
+      widen(t.i, t.count);
+      if (balls) widen(t.j, t.count);
     }
+    widen(patch.touching[k].i, patch.touching[k].count);
+    if (balls) widen(patch.touching[k].j, patch.touching[k].count);
   }
-  share.window = low;
-  share.window_size = high - low;
-  share.forces.assign(static_cast<std::size_t>(kRow * (share.window_size + kMostLanes)), 0.0);
+  patch.low = low;
+  patch.high = high;
+}
+
+// Which patches wait for which, and each thread's window on the forces.
+void find_neighbours(RunningMill& mill) {
+  const auto patch_of = [&](int ball) {
+    const auto behind = std::upper_bound(mill.patches.begin(), mill.patches.end(), ball,
+                                         [](int b, const Patch& p) { return b < p.first; });
+    return static_cast<int>(behind - mill.patches.begin()) - 1;
+  };
+  for (Patch& p : mill.patches) {
+    p.apart = true;
+    p.low_patch = patch_of(p.low);
+    p.high_patch = patch_of(p.high - 1);
+  }
+  for (Share& share : mill.shares) {
+    const auto patch_at = [&](int p) -> Patch& { return mill.patches[static_cast<std::size_t>(p)]; };
+    for (int p = share.last - 1, next = share.last; p >= share.first; --p) {
+      patch_at(p).done_before = std::min(p + 1, next);
+      next = std::min(next, patch_at(p).low_patch);
+    }
+    share.low = patch_at(share.first).first;
+    share.high = patch_at(share.last - 1).last;
+    int reached = 0, waiting = share.first, rows = kMostLanes;
+    for (int p = share.first; p < share.last; ++p) {
+      const Patch& patch = patch_at(p);
+      share.low = std::min(share.low, patch.low);
+      share.high = std::max(share.high, patch.high);
+      for (int q = patch.low_patch; q <= patch.high_patch; ++q)
+        if (q < share.first || q >= share.last) patch_at(q).apart = false;
+      reached = std::max(reached, patch.high);
+      rows = std::max(rows, reached - patch_at(waiting).first);
+      waiting = std::max(waiting, patch.done_before);
+    }
+    // Where threads meet, rows wait until all have come to the end.
+    if (mill.shares.size() > 1) rows = share.high - share.low;
+    const auto room = std::bit_ceil(static_cast<unsigned>(rows));
+    share.mask = static_cast<int>(room) - 1;
+    share.forces.assign(std::size_t{kRow} * room, 0.0);
+  }
 }
 
 // Steps between two searches are won with a larger skin, and paid for with pairs to look at in each of them: with u the
@@ -157,16 +186,19 @@ void search_near(RunningMill& mill, bool settled) {
   mill.skin = best_skin(mill, mean);
   mill.grid.fill(c, 2 * mean + mill.skin);
   if (mill.searches_per_sort > 0 && mill.searches++ % mill.searches_per_sort == 0) sort_by_cell(mill);
-  const std::size_t shares = mill.shares.size();
-  parallel_for(shares, 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t s = begin; s < end; ++s) {
-      Share& share = mill.shares[s];
-      near_balls(mill, share, settled, static_cast<int>(c.size() * s / shares),
-                 static_cast<int>(c.size() * (s + 1) / shares));
-      near_wall(mill, share, settled);
-      open_window(mill, share);
+  const double smallest = *std::min_element(c.radius.begin(), c.radius.end());
+  std::vector<Known> known;
+  if (!settled)
+    for (const Kind kind : {Kind::kBalls, Kind::kPlate, Kind::kLifters}) known.emplace_back(mill, kind);
+  for_shares(mill, [&](Share& share) {
+    for (int p = share.first; p < share.last; ++p) {
+      Patch& patch = mill.patches[static_cast<std::size_t>(p)];
+      near_balls(mill, patch, share, smallest, settled ? nullptr : &known[0]);
+      near_wall(mill, patch, settled ? nullptr : &known[1], settled ? nullptr : &known[2]);
+      find_reach(patch);
     }
   });
+  find_neighbours(mill);
   mill.moved = 0;
   mill.stale = false;
 }

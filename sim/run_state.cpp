@@ -138,7 +138,7 @@ void read_contacts(Reader& reader, RunningMill& mill, Kind kind) {
     } else {
       c.damping = mill.damping[1].of(mass);
     }
-    add(mill.shares[0].touching[static_cast<std::size_t>(kind)], c, kind, mill.model.plain());
+    add(mill.patches[0].touching[static_cast<std::size_t>(kind)], c, kind, mill.model.plain());
     ++mill.flights.contacts[static_cast<std::size_t>(i)];
     if (kind == Kind::kBalls) ++mill.flights.contacts[static_cast<std::size_t>(j)];
   }
@@ -175,7 +175,7 @@ void restore(RunState& run, const std::vector<double>& words) {
     throw InputError("checkpoint", "is damaged; start afresh");
   // How many contacts each ball has is not kept: it follows from the contacts.
   std::fill(run.mill.flights.contacts.begin(), run.mill.flights.contacts.end(), 0);
-  for (Share& share : run.mill.shares) share.touching = {};
+  for (Patch& patch : run.mill.patches) patch.touching = {};
   for (const Kind kind : kAllKinds) read_contacts(reader, run.mill, kind);
   run.mill.stale = true;
 }

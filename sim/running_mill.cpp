@@ -42,26 +42,61 @@ ChargeView view_of(RunningMill& mill) {
           mill.flights.apex.data()};
 }
 
-template <class Body>
-void for_shares(RunningMill& mill, const Body& body) {
-  if (mill.shares.size() == 1) return body(mill.shares[0]);
-  parallel_for(mill.shares.size(), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t s = begin; s < end; ++s) body(mill.shares[s]);
-  });
-}
+Patch& patch_at(RunningMill& mill, int p) { return mill.patches[static_cast<std::size_t>(p)]; }
 
-// Forces of other shares on the balls of this one, into its own.
-void take_over(RunningMill& mill, Share& share) {
+// Forces of other shares on the balls of this patch, into the rows of its own share.
+void take_over(RunningMill& mill, Share& share, const Patch& patch) {
+  const auto at = [](Share& s, int ball) { return s.forces.data() + kRow * (ball & s.mask); };
   for (Share& other : mill.shares) {
     if (&other == &share) continue;
-    const int low = std::max(other.window, share.first);
-    const int high = std::min(other.window + other.window_size, share.last);
-    for (int k = kRow * low; k < kRow * high; ++k) {
-      double& theirs = other.forces[static_cast<std::size_t>(k - kRow * other.window)];
-      share.forces[static_cast<std::size_t>(k - kRow * share.window)] += theirs;
-      theirs = 0;
+    for (int i = std::max(other.low, patch.first); i < std::min(other.high, patch.last); ++i) {
+      double *own = at(share, i), *theirs = at(other, i);
+      for (int k = 0; k < kRow; ++k) {
+        own[k] += theirs[k];
+        theirs[k] = 0;
+      }
     }
   }
+}
+
+// One step of the balls between two searches. A patch is drifted when the first contacts ask for it and kicked when the
+// last ones have been worked out, so that it goes through the cache once. Patches that contacts of several threads
+// reach are drifted before all others and kicked after them.
+void step_balls(RunningMill& mill, const ChargeView& balls, const KickTerms& terms) {
+  const double time_step = mill.model.time_step;
+  const auto drift = [&](const Patch& p) { mill.kernels->drift(balls, time_step, p.first, p.last); };
+  const auto kick = [&](Share& share, const Patch& p) {
+    mill.kernels->kick(balls, terms, mill.exact, {share.forces.data(), share.mask}, p.first, p.last, share.kick);
+  };
+  const bool alone = mill.shares.size() == 1;
+  if (!alone)
+    for_shares(mill, [&](Share& share) {
+      for (int p = share.first; p < share.last; ++p)
+        if (!patch_at(mill, p).apart) drift(patch_at(mill, p));
+    });
+  for_shares(mill, [&](Share& share) {
+    share.at_balls = share.at_wall = {};
+    share.kick = {};
+    share.begun.clear();
+    share.ended.clear();
+    int drifted = share.first, kicked = share.first;
+    for (int p = share.first; p < share.last; ++p) {
+      Patch& patch = patch_at(mill, p);
+      for (const int end = std::min(share.last, patch.high_patch + 1); drifted < end; ++drifted)
+        if (patch_at(mill, drifted).apart) drift(patch_at(mill, drifted));
+      contact_forces(mill, balls, patch, share);
+      for (; kicked < patch.done_before; ++kicked)
+        if (patch_at(mill, kicked).apart) kick(share, patch_at(mill, kicked));
+    }
+  });
+  if (!alone)
+    for_shares(mill, [&](Share& share) {
+      for (int p = share.first; p < share.last; ++p) {
+        if (patch_at(mill, p).apart) continue;
+        take_over(mill, share, patch_at(mill, p));
+        kick(share, patch_at(mill, p));
+      }
+    });
 }
 
 void turn_lifters(RunningMill& mill) {
@@ -164,8 +199,8 @@ ExactSums exact_sums(const MillModel& model, const Charge& charge) {
 std::vector<Contact> contacts_of(const RunningMill& mill, Kind kind) {
   std::vector<Contact> contacts;
   const std::vector<int>& id = mill.charge.id;
-  for (const Share& share : mill.shares) {
-    const ContactTable& table = share.touching[static_cast<std::size_t>(kind)];
+  for (const Patch& patch : mill.patches) {
+    const ContactTable& table = patch.touching[static_cast<std::size_t>(kind)];
     for (int k = 0; k < table.size(); ++k) {
       Contact c = contact_at(table, k);
       c.i = id[static_cast<std::size_t>(c.i)];
@@ -177,7 +212,31 @@ std::vector<Contact> contacts_of(const RunningMill& mill, Kind kind) {
   return contacts;
 }
 
-RunningMill start_mill(const MillModel& model, Charge charge, int threads) {
+namespace {
+
+void cut_up(RunningMill& mill, int threads, int balls_per_patch) {
+  const int balls = static_cast<int>(mill.charge.size());
+  // Whole batches of lanes, so that no two patches share one.
+  const int each = (balls_per_patch + kMostLanes - 1) / kMostLanes * kMostLanes;
+  const int patches = std::max(1, (balls + each / 2) / each);
+  mill.patches.resize(static_cast<std::size_t>(patches));
+  for (int p = 0; p < patches; ++p) {
+    mill.patches[static_cast<std::size_t>(p)].first = p * each;
+    mill.patches[static_cast<std::size_t>(p)].last = p + 1 < patches ? (p + 1) * each : balls;
+  }
+  mill.shares.resize(static_cast<std::size_t>(std::clamp(threads, 1, patches)));
+  const std::size_t shares = mill.shares.size();
+  for (std::size_t s = 0; s < shares; ++s) {
+    mill.shares[s].first = static_cast<int>(mill.patches.size() * s / shares);
+    mill.shares[s].last = static_cast<int>(mill.patches.size() * (s + 1) / shares);
+  }
+  // One patch stays in the cache, wherever its balls are.
+  mill.searches_per_sort = patches == 1 ? 0 : 4;
+}
+
+}  // namespace
+
+RunningMill start_mill(const MillModel& model, Charge charge, int threads, int balls_per_patch) {
   RunningMill mill;
   mill.model = model;
   mill.damping = {Damping(model.ball.springs, model.time_step), Damping(model.wall.springs, model.time_step)};
@@ -206,14 +265,7 @@ RunningMill start_mill(const MillModel& model, Charge charge, int threads) {
   const auto lifters = static_cast<std::size_t>(model.shell.lifter_count);
   mill.ledger.impacts.lifter_number.assign(lifters, 0);
   mill.ledger.impacts.lifter_energy.assign(lifters, 0);
-  mill.shares.resize(static_cast<std::size_t>(threads));
-  for (std::size_t s = 0; s < mill.shares.size(); ++s) {
-    mill.shares[s].first = static_cast<int>(c.size() * s / mill.shares.size());
-    mill.shares[s].last = static_cast<int>(c.size() * (s + 1) / mill.shares.size());
-  }
-  // Few balls fit into the nearest cache, wherever they are.
-  constexpr std::size_t kManyBalls = 1000;
-  mill.searches_per_sort = c.size() < kManyBalls ? 0 : 32;
+  cut_up(mill, threads, balls_per_patch);
   return mill;
 }
 
@@ -227,14 +279,8 @@ void advance(RunningMill& mill) {
   const KickTerms terms = kick_terms(mill);
 
   turn_lifters(mill);
-  for_shares(mill, [&](Share& s) { mill.kernels->drift(balls, m.time_step, s.first, s.last); });
-  for_shares(mill, [&](Share& s) { contact_forces(mill, balls, s); });
+  step_balls(mill, balls, terms);
   book_events(mill);
-  for_shares(mill, [&](Share& s) {
-    take_over(mill, s);
-    s.kick = {};
-    mill.kernels->kick(balls, terms, mill.exact, {s.forces.data(), s.window}, s.first, s.last, s.kick);
-  });
   book(mill);
 
   const double next = std::max(mill.fastest * m.time_step, shell);
@@ -256,8 +302,8 @@ Energies energies_of(const RunningMill& mill) {
   }
   for (const Kind kind : {Kind::kBalls, Kind::kPlate, Kind::kLifters}) {
     const ContactModel& law = kind == Kind::kBalls ? mill.model.ball : mill.model.wall;
-    for (const Share& share : mill.shares) {
-      const ContactTable& table = share.touching[static_cast<std::size_t>(kind)];
+    for (const Patch& patch : mill.patches) {
+      const ContactTable& table = patch.touching[static_cast<std::size_t>(kind)];
       for (int k = 0; k < table.size(); ++k) {
         const Contact contact = contact_at(table, k);
         const double ri = c.radius[contact.i], rj = kind == Kind::kBalls ? c.radius[contact.j] : 0;

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <string>
 
+#include "core/parallel_for.h"
 #include "sim/cell_grid.h"
 #include "sim/charge.h"
 #include "sim/ledger.h"
@@ -17,7 +18,7 @@ ExactSums exact_sums(const MillModel& model, const Charge& charge);
 // Flights: which balls touch nothing, and how high they have come.
 struct Flights {
   std::vector<int> contacts;  // that the ball has
-  std::vector<double> apex;   // highest since it last left a contact [m]
+  std::vector<double> apex;   // of a ball that has none: highest since it left the last one [m]
 };
 
 // A running mill. Everything that the future depends on: copied, it runs on in the same way.
@@ -30,8 +31,8 @@ struct RunningMill {
   Ledger ledger;
   std::int64_t step = 0;  // since the mill began to turn
 
-  // Contacts and near pairs, in as many parts as there are threads.
-  std::vector<Share> shares;
+  std::vector<Patch> patches;
+  std::vector<Share> shares;  // one for each thread
 
   // Bookkeeping of the near pairs; changes no result.
   double skin = 0;     // [m]
@@ -52,9 +53,19 @@ int threads_for(std::size_t balls);
 // Of the shell's circle at its fastest [m/s].
 double shell_speed(const MillModel& model);
 
+// body(share), each in its thread.
+template <class Body>
+void for_shares(RunningMill& mill, const Body& body) {
+  if (mill.shares.size() == 1) return body(mill.shares[0]);
+  parallel_for(mill.shares.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t s = begin; s < end; ++s) body(mill.shares[s]);
+  });
+}
+
 // Balls as they lie at step 0, with their velocities at that moment (taken from `vx`, `vy`, `spin`). `threads` share
-// the work of a step.
-RunningMill start_mill(const MillModel& model, Charge charge, int threads = 1);
+// the work of a step, in patches of so many balls.
+inline constexpr int kBallsPerPatch = 2048;
+RunningMill start_mill(const MillModel& model, Charge charge, int threads = 1, int balls_per_patch = kBallsPerPatch);
 
 // The contacts of one kind, in no order; i and j are the balls' numbers.
 std::vector<Contact> contacts_of(const RunningMill& mill, Kind kind);

@@ -19,12 +19,16 @@ struct ChargeView {
   double *end_x, *end_y, *apex;
 };
 
-// Memory of the contacts of one list: columns of numbers and the two bodies (ball and ball, or ball and feature).
+// What the contacts of one list remember. Groups of kGroup contacts lie one behind the other, as one stream through the
+// memory; in a group, column by column. `i` and `j` are the two bodies: ball and ball, or ball and feature.
+inline constexpr int kGroup = 8;
+enum Column { kDamping, kOverlap, kDashpot, kSpring, kNormalLost, kSlidingLost, kForce, kStored, kTermDamping, kRoll };
+inline constexpr int kPlainColumns = 6, kAllColumns = 10;  // those of a model that is not plain come last
 struct ContactColumns {
-  const int *i, *j;  // and all others: with room for whole batches of lanes
-  double *overlap, *dashpot, *spring, *normal_lost, *sliding_lost;
-  const double* damping;
-  double *force, *stored, *term_damping, *roll;  // of a model that is not plain
+  const int *i, *j;  // with room for whole groups
+  double* numbers;
+  int columns;
+  double* of(int k) const { return numbers + (k / kGroup * kGroup * columns + k % kGroup); }
 };
 
 // Steps of the exact sums of a mill.
@@ -103,10 +107,10 @@ struct KickSums {
   void add(const KickSums& s);
 };
 
-// Rows of the balls from `first` on, with room for whole batches of lanes.
+// The row of ball i is number i & mask: a power of two of rows, whole batches of lanes, that the balls go through.
 struct ForceView {
   double* rows;
-  int first = 0;
+  int mask = 0;
 };
 
 // The balls in the order of the cells of a grid. Readable for kMostLanes beyond the end.

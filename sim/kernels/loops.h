@@ -23,33 +23,32 @@ Real or_zero(const typename Lanes<Real>::Mask& yes, const Real& v) {
 
 template <class Real, bool kPlain>
 BasicReaction<Real> step_of(const ContactModel& law, const Meeting<Real>& m, const typename Lanes<Real>::Mask& goes_on,
-                            double time_step, const ContactColumns& columns, int k) {
+                            double time_step, double* numbers) {
   using L = Lanes<Real>;
-  BasicTouch<Real> now = m.now;
-  now.damping = L::load(columns.damping + k);
-  BasicContactState<Real> s{L::load(columns.overlap + k), L::load(columns.dashpot + k), L::load(columns.spring + k),
-                            L::load(columns.normal_lost + k), L::load(columns.sliding_lost + k)};
-  const BasicContactState<Real> before = s;
-  const auto keep = [&](double* to, const Real& next, const Real& old) {
-    L::store(to + k, select(goes_on, next, old));
+  const auto load = [&](Column column) { return L::load(numbers + kGroup * column); };
+  const auto keep = [&](Column column, const Real& next, const Real& old) {
+    L::store(numbers + kGroup * column, select(goes_on, next, old));
   };
+  BasicTouch<Real> now = m.now;
+  now.damping = load(kDamping);
+  BasicContactState<Real> s{load(kOverlap), load(kDashpot), load(kSpring), load(kNormalLost), load(kSlidingLost)};
+  const BasicContactState<Real> before = s;
   BasicReaction<Real> r;
   if constexpr (kPlain) {
     r = touch(law.springs, now, false, time_step, s);
-    keep(columns.dashpot, s.dashpot, before.dashpot);
+    keep(kDashpot, s.dashpot, before.dashpot);
   } else {
-    BasicTermState<Real> t{L::load(columns.force + k), L::load(columns.stored + k), L::load(columns.term_damping + k),
-                           L::load(columns.roll + k)};
+    BasicTermState<Real> t{load(kForce), load(kStored), load(kTermDamping), load(kRoll)};
     const BasicTermState<Real> t_before = t;
     r = touch(law, now, m.pair, false, time_step, s, t);
-    keep(columns.force, t.force, t_before.force);
-    keep(columns.stored, t.stored, t_before.stored);
-    keep(columns.roll, t.roll, t_before.roll);
+    keep(kForce, t.force, t_before.force);
+    keep(kStored, t.stored, t_before.stored);
+    keep(kRoll, t.roll, t_before.roll);
   }
-  keep(columns.overlap, s.overlap, before.overlap);
-  keep(columns.spring, s.spring, before.spring);
-  keep(columns.normal_lost, s.normal_lost, before.normal_lost);
-  keep(columns.sliding_lost, s.sliding_lost, before.sliding_lost);
+  keep(kOverlap, s.overlap, before.overlap);
+  keep(kSpring, s.spring, before.spring);
+  keep(kNormalLost, s.normal_lost, before.normal_lost);
+  keep(kSlidingLost, s.sliding_lost, before.sliding_lost);
   return r;
 }
 
@@ -118,7 +117,7 @@ struct Loops {
     for (int k = first; k < last; k += L::kSize) {
       const Meeting<Real> m = meet(k);
       const auto goes_on = m.touches & L::first(last - k);
-      const BasicReaction<Real> r = step_of<Real, kPlain>(law, m, goes_on, time_step, columns, k);
+      const BasicReaction<Real> r = step_of<Real, kPlain>(law, m, goes_on, time_step, columns.of(k));
       const Push<Real> p = push_of(m, r);
       const int b = k % kBlock;
       touching |= std::uint64_t{L::bits(goes_on)} << b;
@@ -152,8 +151,8 @@ struct Loops {
   }
   static void balls(const ContactStep& step, const ContactColumns& columns, int first, int last, Pushes& out,
                     ContactSums& sums) {
-    columns.force ? balls_by<false>(step, columns, first, last, out, sums)
-                  : balls_by<true>(step, columns, first, last, out, sums);
+    const auto loop = columns.columns == kPlainColumns ? balls_by<true> : balls_by<false>;
+    loop(step, columns, first, last, out, sums);
   }
 
   template <bool kPlain, class Point>
@@ -171,8 +170,8 @@ struct Loops {
   template <class Point>
   static void wall(const ContactStep& step, const ContactColumns& columns, int first, int last, Pushes& out,
                    ContactSums& sums, const Point& point) {
-    columns.force ? wall_by<false>(step, columns, first, last, out, sums, point)
-                  : wall_by<true>(step, columns, first, last, out, sums, point);
+    const auto loop = columns.columns == kPlainColumns ? wall_by<true, Point> : wall_by<false, Point>;
+    loop(step, columns, first, last, out, sums, point);
   }
   static void plate(const ContactStep& step, const ContactColumns& columns, int first, int last, Pushes& out,
                     ContactSums& sums) {
@@ -201,7 +200,7 @@ struct Loops {
     typedef double Row __attribute__((vector_size(kRow * sizeof(double)), aligned(sizeof(double)), may_alias));
     const Row* from = reinterpret_cast<const Row*>(rows);
     Row* sums = reinterpret_cast<Row*>(force.rows);
-    for (int k = 0; k < n; ++k) sums[at[k] - force.first] += from[k];
+    for (int k = 0; k < n; ++k) sums[at[k] & force.mask] += from[k];
   }
 
   [[gnu::flatten]] static void drift(const ChargeView& c, double time_step, int first, int last) {
@@ -220,7 +219,7 @@ struct Loops {
     Real fastest2 = 0, squares = 0, mass_moment = 0;
     Real ends_torque = 0, ends_loss = 0, drag_loss = 0, pool_loss = 0, external = 0;
     over_balls<Real>(first, last, [&](int i, const auto& at) {
-      double* rows = force.rows + kRow * (i - force.first);
+      double* rows = force.rows + kRow * (i & force.mask);
       const Real x = at.load(c.x + i), y = at.load(c.y + i);
       Real vx = at.load(c.vx + i), vy = at.load(c.vy + i), spin = at.load(c.spin + i);
       Real pushed_x = 0, pushed_y = 0, turned = 0, pressed = 0;
@@ -260,7 +259,9 @@ struct Loops {
       at.store(c.vx + i, vx);
       at.store(c.vy + i, vy);
       at.store(c.spin + i, spin);
-      at.store(c.apex + i, max(at.load(c.apex + i), y));
+      // Few balls rise freely: most of the time there is nothing to write.
+      const Real apex = at.load(c.apex + i);
+      if (L::bits(y > apex) != 0) at.store(c.apex + i, max(apex, y));
       mass_moment += exact.mass_moment(at.load(c.mass + i) * x);
       const Real square = at.counted(vx * vx + vy * vy);
       squares += square;

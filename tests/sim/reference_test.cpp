@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <bit>
 
 #include "sim/ball_order.h"
@@ -24,16 +25,17 @@ std::uint64_t hash_of(const Charge& c, const Ledger& l) {
 }
 
 // What the fast way does otherwise than the plain one and may not change a bit: near pairs and their tiers, cells,
-// lifters looked up by angle; lanes of each kind; work shared by threads; balls that are stored in another order.
+// lifters looked up by angle; lanes of each kind; work cut into patches and shared by threads; balls that are stored in
+// another order.
 struct Way {
   const Kernels* kernels;
-  int threads, searches_per_sort;
+  int threads, balls_per_patch, searches_per_sort;
 };
 std::vector<Way> ways() {
   std::vector<Way> all;
-  for (const Kernels* kernels : all_kernels()) all.push_back({kernels, 1, 0});
-  all.push_back({&best_kernels(), 3, 0});
-  all.push_back({&best_kernels(), 2, 1});
+  for (const Kernels* kernels : all_kernels()) all.push_back({kernels, 1, kBallsPerPatch, 0});
+  all.push_back({&best_kernels(), 3, 8, 0});
+  all.push_back({&best_kernels(), 2, 8, 1});
   return all;
 }
 
@@ -45,14 +47,15 @@ void expect_same_bits(const Config& config, int steps) {
   EXPECT_GT(plain.ledger.dissipated[1], 0) << "nothing has slid";
   EXPECT_GT(plain.ledger.dissipated[2], 0) << "nothing has touched the wall";
   for (const Way& way : ways()) {
-    RunningMill fast = start_mill(model, start, way.threads);
+    RunningMill fast = start_mill(model, start, way.threads, way.balls_per_patch);
     fast.kernels = way.kernels;
     fast.searches_per_sort = way.searches_per_sort;
     for (int k = 0; k < steps; ++k) advance(fast);
     sort_by_number(fast);
     EXPECT_EQ(hash_of(fast.charge, fast.ledger), hash_of(plain.charge, plain.ledger))
         << name_of(config.mill.lifters.profile) << ", effects " << names_of(config.effects) << "; " << way.kernels->name
-        << ", " << way.threads << " threads, sorted with every search number " << way.searches_per_sort;
+        << ", " << way.threads << " threads, " << way.balls_per_patch
+        << " balls a patch, sorted with every search number " << way.searches_per_sort;
   }
 }
 
@@ -74,6 +77,32 @@ TEST(Reference, GivesTheSameBitsWithEffects) {
     config.effects = trial == 0 ? every_effect() : some_effects(random);
     expect_same_bits(config, 2000);
   }
+}
+
+// Of many patches most are drifted, worked out and kicked while others still wait.
+TEST(Patches, GiveTheSameBits) {
+  Config config = paper_mill();
+  config.mill.diameter = 2.5;
+  config.charge.count = 3000;
+  const MillModel model = make_mill_model(config);
+  const Charge start = place_loosely(config, model, draw_balls(config));
+  const auto run = [&](int threads, int balls_per_patch, int searches_per_sort) {
+    RunningMill mill = start_mill(model, start, threads, balls_per_patch);
+    mill.searches_per_sort = searches_per_sort;
+    for (int k = 0; k < 3000; ++k) advance(mill);
+    if (balls_per_patch < 3000) {
+      const auto apart =
+          std::count_if(mill.patches.begin(), mill.patches.end(), [](const Patch& p) { return p.apart; });
+      EXPECT_GT(apart, static_cast<long>(mill.patches.size()) / 2);
+      EXPECT_EQ(apart<static_cast<long>(mill.patches.size()), threads> 1) << "where threads meet";
+    }
+    sort_by_number(mill);
+    return hash_of(mill.charge, mill.ledger);
+  };
+  const std::uint64_t whole = run(1, 3000, 0);
+  EXPECT_EQ(run(1, 96, 4), whole);
+  EXPECT_EQ(run(2, 96, 4), whole);
+  EXPECT_EQ(run(3, 200, 40), whole);
 }
 
 }  // namespace
