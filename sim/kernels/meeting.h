@@ -120,6 +120,66 @@ NearestPoint<Real> nearest_on_convex(const ConvexLifters& lifters, const int* fe
   return {select(on_face, out, d), px * cos - py * sin, px * sin + py * cos};
 }
 
+template <class Real>
+struct RunPoint {
+  NearestPoint<Real> at;
+  typename Lanes<Real>::Mask unsure;  // within reach, but behind the run or on it
+};
+
+// As nearest_on_wall of sim/shell.h, number by number, for balls that touch what they see. Only blocks of faces are
+// looked at that one of the balls reaches.
+template <class Real>
+RunPoint<Real> nearest_on_runs(const LifterRuns& lifters, const int* feature, const Real& x, const Real& y,
+                               const Real& radius) {
+  using L = Lanes<Real>;
+  using Mask = typename L::Mask;
+  using std::sqrt;
+  const Real cos = L::gather(lifters.cos - 1, feature), sin = L::gather(lifters.sin - 1, feature);
+  const Real u = x * cos + y * sin, v = y * cos - x * sin;
+  const Real number = L::gather(lifters.run_of, feature), reach2 = 1.000001 * radius * radius;
+  Real d2 = reach2, face = 0;
+  for (int r = 0; r < lifters.count; ++r) {
+    const Run& run = lifters.runs[r];
+    const Mask mine = number == Real(r);
+    if (L::bits(mine) == 0) continue;
+    for (int b = run.first_block; b < run.last_block; ++b) {
+      const FaceBlock& block = lifters.blocks[b];
+      const Real bx = u - block.x, by = v - block.y, span = radius + block.reach;
+      if (L::bits(mine & (bx * bx + by * by <= 1.000001 * span * span)) == 0) continue;
+      for (int f = block.begin; f < block.end; ++f) {
+        const Real square = foot_on(lifters.faces[f], u, v).d2;
+        const Mask nearer = mine & (square < d2);
+        d2 = select(nearer, square, d2);
+        face = select(nearer, Real(lifters.faces[f].number), face);
+      }
+    }
+  }
+  const Mask found = d2 < reach2;
+  if (L::bits(found) == 0) return {{Real(lifters.out_of_sight), Real(1), Real(0)}, found};
+
+  int at[L::kSize];
+  L::store_ints(at, face * Real(sizeof(LifterFace) / sizeof(double)));
+  const LifterFace* faces = lifters.faces;
+  const BasicFace<Real> f{
+      L::gather(&faces->x, at),  L::gather(&faces->y, at),  L::gather(&faces->tx, at),     L::gather(&faces->ty, at),
+      L::gather(&faces->nx, at), L::gather(&faces->ny, at), L::gather(&faces->length, at), face};
+  L::store_ints(at, face * Real(sizeof(FaceCorners) / sizeof(double)));
+  const FaceCorners* corners = lifters.corners;
+  const Foot<Real> foot = foot_on(f, u, v);
+  const Mask at_start = foot.along <= Real(0), at_corner = at_start | (foot.along >= f.length);
+  const Real cx = select(at_start, L::gather(&corners->sx, at), L::gather(&corners->ex, at));
+  const Real cy = select(at_start, L::gather(&corners->sy, at), L::gather(&corners->ey, at));
+  const Real out = (u - f.x) * f.nx + (v - f.y) * f.ny;
+  const Real in_front = select(at_corner, -(foot.dx * cx + foot.dy * cy), out);
+  const Real d = sqrt(foot.d2);
+  const Real distance = select(at_corner, d, out);
+  const Real px = select(at_corner, foot.dx / d, -f.nx), py = select(at_corner, foot.dy / d, -f.ny);
+  const Mask unsure = found & ((in_front < Real(0)) | (foot.d2 <= Real(0)));
+  return {{select(found, distance, Real(lifters.out_of_sight)), select(found, px * cos - py * sin, Real(1)),
+           select(found, px * sin + py * cos, Real(0))},
+          unsure};
+}
+
 // What a contact does to its two bodies, every number rounded for the sums it goes into.
 template <class Real>
 struct Push {
