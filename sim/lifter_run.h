@@ -33,9 +33,15 @@ struct Run {
   int begin = 0, end = 0;               // its faces
   int first_block = 0, last_block = 0;  // blocks of them, [first, last)
   int section = 0;
-  bool convex = false;             // few faces round a convex body, and no other run: the quick way
+  bool convex = false;             // round a convex body: the quick way
   double x = 0, y = 0, reach = 0;  // circle around the run: centre, radius [m]
 };
+
+// How far (x, y) stands out from the line of a face.
+template <class Number, class Real>
+inline Real out_of(const BasicFace<Number>& f, const Real& x, const Real& y) {
+  return (x - f.x) * f.nx + (y - f.y) * f.ny;
+}
 
 // Nearest point of a face to (x, y), how far along, and the square of its distance.
 template <class Real>
@@ -46,9 +52,8 @@ template <class Number, class Real>
 inline Foot<Real> foot_on(const BasicFace<Number>& f, const Real& x, const Real& y) {
   using std::max;
   using std::min;
-  const Real px = x - f.x, py = y - f.y;
-  const Real along = min(max(px * f.tx + py * f.ty, Real(0)), Real(f.length));
-  const Real dx = along * f.tx - px, dy = along * f.ty - py;
+  const Real along = min(max((x - f.x) * f.tx + (y - f.y) * f.ty, Real(0)), Real(f.length));
+  const Real dx = f.x + along * f.tx - x, dy = f.y + along * f.ty - y;
   return {along, dx, dy, dx * dx + dy * dy};
 }
 

@@ -11,8 +11,7 @@ namespace tumble::sim {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr int kFewFaces = kMostFaces;  // up to here it is quicker to look at all of them
-constexpr int kFacesInBlock = 8;       // of longer runs
+constexpr int kFacesInBlock = 8;  // of longer runs
 
 using Vec2 = Eigen::Vector2d;
 
@@ -88,7 +87,7 @@ void add_run(Shell& shell, const MillShape& shape, int section_number, const std
   }
   run.end = static_cast<int>(shell.faces.size());
   // Only where the closing line lies in the shell's steel: a ball under a hook would take it for a face.
-  run.convex = p.size() == section.chain.size() && run.end - run.begin <= kFewFaces && closes_convex(p);
+  run.convex = p.size() == section.chain.size() && closes_convex(p);
   run.first_block = static_cast<int>(shell.blocks.size());
   for (std::size_t i = 0; i + 1 < p.size(); i += kFacesInBlock) {
     const std::size_t end = std::min(i + kFacesInBlock, p.size() - 1);
@@ -155,12 +154,11 @@ Nearest point_of(const Shell& shell, const Closest& c, double x, double y, doubl
   const LifterFace& f = shell.faces[static_cast<std::size_t>(c.face)];
   const FaceCorners& ends = shell.corners[static_cast<std::size_t>(c.face)];
   const FaceLabels& labels = shell.labels[static_cast<std::size_t>(c.face)];
-  if (c.foot.along > 0 && c.foot.along < f.length)
-    return {(x - f.x) * f.nx + (y - f.y) * f.ny, -f.nx, -f.ny, labels.face};
+  if (c.foot.along > 0 && c.foot.along < f.length) return {out_of(f, x, y), -f.nx, -f.ny, labels.face};
   const bool start = c.foot.along <= 0;
   const Face face = start ? labels.at_start : labels.at_end;
-  const double d = std::sqrt(c.foot.d2);
-  if (d > 0) return {side * d, side * c.foot.dx / d, side * c.foot.dy / d, face};
+  const double d = std::sqrt(c.foot.d2), per_d = 1 / d;
+  if (d > 0) return {side * d, side * c.foot.dx * per_d, side * c.foot.dy * per_d, face};
   const double ox = start ? ends.sx : ends.ex, oy = start ? ends.sy : ends.ey, o = std::hypot(ox, oy);
   return {0, -ox / o, -oy / o, face};
 }
@@ -171,7 +169,7 @@ bool in_front(const Shell& shell, const Closest& c, double x, double y) {
   const FaceCorners& ends = shell.corners[static_cast<std::size_t>(c.face)];
   if (c.foot.along <= 0) return c.foot.dx * ends.sx + c.foot.dy * ends.sy <= 0;
   if (c.foot.along >= f.length) return c.foot.dx * ends.ex + c.foot.dy * ends.ey <= 0;
-  return (x - f.x) * f.nx + (y - f.y) * f.ny >= 0;
+  return out_of(f, x, y) >= 0;
 }
 
 // Is the point in the steel of a section? The axis is not, and each crossing of the outline on the way to it tells.
@@ -211,25 +209,17 @@ Nearest nearest_on_run(const Shell& shell, const Run& run, double x, double y) {
     return in_front(shell, c, x, y) ? point_of(shell, c, x, y, 1) : from_behind(shell, run, x, y);
   }
   // The face from which the point stands out farthest holds the nearest point of a convex body, or one of its ends.
-  int nearest = 0;
+  int farthest = run.begin;
   double out = -kInfinity;
   for (int i = run.begin; i < run.end; ++i) {
-    const LifterFace& f = shell.faces[static_cast<std::size_t>(i)];
-    const double d = (x - f.x) * f.nx + (y - f.y) * f.ny;
+    const double d = out_of(shell.faces[static_cast<std::size_t>(i)], x, y);
     if (d > out) {
       out = d;
-      nearest = i;
+      farthest = i;
     }
   }
   if (out <= 0) return from_behind(shell, run, x, y);
-  const LifterFace& face = shell.faces[static_cast<std::size_t>(nearest)];
-  const FaceLabels& labels = shell.labels[static_cast<std::size_t>(nearest)];
-  const double along = (x - face.x) * face.tx + (y - face.y) * face.ty;
-  if (along >= 0 && along <= face.length) return {out, -face.nx, -face.ny, labels.face};
-  const double end = along < 0 ? 0 : face.length;
-  const double dx = face.x + end * face.tx - x, dy = face.y + end * face.ty - y;
-  const double d = std::sqrt(dx * dx + dy * dy), per_d = 1 / d;
-  return {d, dx * per_d, dy * per_d, along < 0 ? labels.at_start : labels.at_end};
+  return point_of(shell, {farthest, foot_on(shell.faces[static_cast<std::size_t>(farthest)], x, y)}, x, y, 1);
 }
 
 }  // namespace
@@ -264,10 +254,6 @@ Shell make_shell(const MillShape& shape) {
     for (const Vec2& p : section.chain)
       shell.lifter_reach = std::max(shell.lifter_reach, std::hypot(p.x() - shell.lifter_centre, p.y()));
 
-  // Among others it is searched as they are: the two ways round a corner differ in the last bit, and the lanes go one.
-  if (shell.runs.size() > 1)
-    for (Run& run : shell.runs) run.convex = false;
-
   shell.run_of.push_back(-1);
   for (int k = 0; k < shell.lifter_count; ++k) {
     shell.first_feature.push_back(static_cast<int>(shell.features.size()) + 1);
@@ -292,6 +278,7 @@ ConvexLifters convex_lifters(const Shell& shell) {
   ConvexLifters lifters;
   if (shell.runs.size() != 1 || !shell.runs[0].convex) return lifters;
   const Run& run = shell.runs[0];
+  if (run.end - run.begin > kMostFaces) return lifters;
   for (int i = run.begin; i < run.end; ++i) {
     const LifterFace& f = shell.faces[static_cast<std::size_t>(i)];
     const int k = lifters.faces++;
