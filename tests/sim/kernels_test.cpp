@@ -39,7 +39,7 @@ struct AtLifters {
       j.push_back(feature);
     }
     i.resize(i.size() + kMostLanes, 0);
-    j.resize(j.size() + kMostLanes, 0);
+    j.resize(j.size() + kMostLanes, 1);
     balls.x = x.data();
     balls.y = y.data();
     balls.radius = radius.data();
