@@ -91,6 +91,15 @@ const RunningMill& rolling_mill() {
   return mill;
 }
 
+const RunningMill& worn_mill() {
+  static const RunningMill mill = [] {
+    Config config = packed_mill();
+    config.effects["lifter_wear"] = {{"height_loss", {0.3}}, {"rounding", {0.005}}};
+    return turned(config);
+  }();
+  return mill;
+}
+
 void count(benchmark::State& state, int items) { state.SetItemsProcessed(state.iterations() * items); }
 
 template <class Body>  // body(first, last, pushes, sums)
@@ -132,6 +141,19 @@ void lifter_contacts(benchmark::State& state, const Kernels& kernels) {
   in_blocks(state, s.touching(Kind::kLifters), [&](int first, int last, Pushes& out, ContactSums& sums) {
     kernels.lifters(step, columns, first, last, points, out, sums);
   });
+}
+
+void nearest_on_worn_lifters(benchmark::State& state, const Kernels& kernels) {
+  Scene s(kernels, worn_mill());
+  const ContactTable& table = s.touching(Kind::kLifters);
+  WallPoints points;
+  for ([[maybe_unused]] auto _ : state)
+    for (int k = 0; k < table.size(); k += kBlock) {
+      kernels.nearest_on_runs(s.view, s.mill.runs, table.i.data() + k, table.j.data() + k,
+                              std::min(kBlock, table.size() - k), points);
+      benchmark::DoNotOptimize(points);
+    }
+  count(state, table.size());
 }
 
 template <class Touching>  // touching(tier, hits)
@@ -251,6 +273,7 @@ constexpr Loop kLoops[] = {{"balls, contacts", ball_contacts},
                            {"balls with rolling resistance, contacts", rolling_ball_contacts},
                            {"plate, contacts", plate_contacts},
                            {"lifters, contacts", lifter_contacts},
+                           {"nearest_on_runs of worn lifters, contacts", nearest_on_worn_lifters},
                            {"scatter, contacts", scatter_contacts},
                            {"touching_pairs, pairs", touching_pairs},
                            {"touching_plate, pairs", touching_plate},

@@ -60,6 +60,30 @@ void push(const Work& w, int i, int j, const Push<double>& p) {
   w.sums().add({p.normal_loss, p.sliding_loss, p.rolling_loss, p.torque, p.torque_shear});
 }
 
+// Where the balls i meet the lifters' runs j, n <= kBlock of them.
+void find_points(const Work& w, const int* i, const int* j, int n, WallPoints& points) {
+  std::uint64_t unsure = w.mill.kernels->nearest_on_runs(w.balls, w.mill.runs, i, j, n, points);
+  for (; unsure != 0; unsure &= unsure - 1) {
+    const int b = __builtin_ctzll(unsure);
+    const WallPoint p = nearest_on_wall(w.mill.model.shell, w.pose, j[b], w.balls.x[i[b]], w.balls.y[i[b]]);
+    points.distance[b] = p.distance;
+    points.nx[b] = p.nx;
+    points.ny[b] = p.ny;
+  }
+}
+
+int touching_runs(const Work& w, const NearPairs::Tier& tier, int* hits) {
+  WallPoints points;
+  int found = 0;
+  for (int k = 0; k < tier.count; k += kBlock) {
+    const int n = std::min(kBlock, tier.count - k);
+    find_points(w, tier.i.data() + k, tier.j.data() + k, n, points);
+    for (int b = 0; b < n; ++b)
+      if (points.distance[b] < w.balls.radius[tier.i[static_cast<std::size_t>(k + b)]]) hits[found++] = k + b;
+  }
+  return found;
+}
+
 // Contacts that touched at the last step. Those that do no more are left, with their memory, in `parted`.
 void go_on(const Work& w) {
   ContactTable& table = w.table();
@@ -76,13 +100,7 @@ void go_on(const Work& w) {
     } else if (w.kind == Kind::kPlate) {
       kernels.plate(w.step, columns, k, end, out, w.sums());
     } else {
-      for (int b = 0; b < end - k && w.step.lifters->faces == 0; ++b) {
-        const int i = columns.i[k + b];
-        const WallPoint p = nearest_on_wall(w.mill.model.shell, w.pose, columns.j[k + b], w.balls.x[i], w.balls.y[i]);
-        points.distance[b] = p.distance;
-        points.nx[b] = p.nx;
-        points.ny[b] = p.ny;
-      }
+      if (w.step.lifters->faces == 0) find_points(w, columns.i + k, columns.j + k, end - k, points);
       kernels.lifters(w.step, columns, k, end, points, out, w.sums());
     }
     if (out.too_deep != 0) {
@@ -155,13 +173,7 @@ void begin_new(const Work& w) {
     } else if (w.step.lifters->faces > 0) {
       found = kernels.touching_lifters(w.balls, *w.step.lifters, tier.i.data(), tier.j.data(), tier.count, hits.data());
     } else {
-      for (int k = 0; k < tier.count; ++k) {
-        const int i = tier.i[k];
-        const double x = w.balls.x[i], y = w.balls.y[i], radius = w.balls.radius[i];
-        if (may_touch(shell, w.pose, tier.j[k], x, y, radius) &&
-            nearest_on_wall(shell, w.pose, tier.j[k], x, y).distance < radius)
-          hits[found++] = k;
-      }
+      found = touching_runs(w, tier, hits.data());
     }
     while (found-- > 0) {  // from the back: the last of the tier fills the gap
       const int k = hits[found];

@@ -100,7 +100,6 @@ void step_balls(RunningMill& mill, const ChargeView& balls, const KickTerms& ter
 }
 
 void turn_lifters(RunningMill& mill) {
-  if (mill.lifters.faces == 0) return;
   const ShellPose pose = pose_of(mill_angle(mill.model, mill.step));
   const std::vector<Feature>& features = mill.model.shell.features;
   for (std::size_t f = 0; f < features.size(); ++f) {
@@ -108,8 +107,9 @@ void turn_lifters(RunningMill& mill) {
     mill.lifter_cos[f] = d.cos;
     mill.lifter_sin[f] = d.sin;
   }
-  mill.lifters.cos = mill.lifter_cos.data();
-  mill.lifters.sin = mill.lifter_sin.data();
+  mill.runs = lifter_runs(mill.model.shell);
+  mill.runs.cos = mill.lifters.cos = mill.lifter_cos.data();
+  mill.runs.sin = mill.lifters.sin = mill.lifter_sin.data();
 }
 
 KickTerms kick_terms(const RunningMill& mill) {

@@ -43,7 +43,8 @@ struct RunningMill {
   int searches = 0, searches_per_sort = 0;  // balls are sorted by cell with every so many searches; 0: never
   std::vector<Ended> ended_at_wall;
   const Kernels* kernels = nullptr;
-  ConvexLifters lifters;                       // as the kernels see them at this step, if they can
+  ConvexLifters lifters;                       // as the kernels see them at this step, if they are such
+  LifterRuns runs;                             // and whatever they are
   std::vector<double> lifter_cos, lifter_sin;  // of each feature
 };
 

@@ -11,8 +11,7 @@ namespace tumble::sim {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr int kFewFaces = kMostFaces;  // up to here it is quicker to look at all of them
-constexpr int kFacesInBlock = 8;       // of longer runs
+constexpr int kFacesInBlock = 8;  // of longer runs
 
 using Vec2 = Eigen::Vector2d;
 
@@ -71,21 +70,24 @@ void add_run(Shell& shell, const MillShape& shape, int section_number, const std
     const Vec2 a = p[i], b = p[i + 1];
     const Vec2 t = (b - a).normalized();
     const Vec2 n(t.y(), -t.x());
-    FaceEnds ends{n.x(), n.y(), n.x(), n.y(), {}, {}, {}};
-    ends.face = ends.at_start = ends.at_end = face_of(section, shape.radius, (a + b) / 2, n);
+    FaceCorners corners{n.x(), n.y(), n.x(), n.y()};
+    FaceLabels labels;
+    labels.face = labels.at_start = labels.at_end = face_of(section, shape.radius, (a + b) / 2, n);
     if (i > 0) {
-      FaceEnds& before = shell.ends.back();
+      FaceCorners& before = shell.corners.back();
       const Vec2 corner = n + Vec2(before.ex, before.ey);  // so far the normal of the face before
-      before.ex = ends.sx = corner.x();
-      before.ey = ends.sy = corner.y();
-      before.at_end = ends.at_start = face_of(section, shape.radius, a, corner);
+      before.ex = corners.sx = corner.x();
+      before.ey = corners.sy = corner.y();
+      shell.labels.back().at_end = labels.at_start = face_of(section, shape.radius, a, corner);
     }
-    shell.faces.push_back({a.x(), a.y(), t.x(), t.y(), n.x(), n.y(), (b - a).norm()});
-    shell.ends.push_back(ends);
+    shell.faces.push_back(
+        {a.x(), a.y(), t.x(), t.y(), n.x(), n.y(), (b - a).norm(), static_cast<double>(shell.faces.size())});
+    shell.corners.push_back(corners);
+    shell.labels.push_back(labels);
   }
   run.end = static_cast<int>(shell.faces.size());
   // Only where the closing line lies in the shell's steel: a ball under a hook would take it for a face.
-  run.convex = p.size() == section.chain.size() && run.end - run.begin <= kFewFaces && closes_convex(p);
+  run.convex = p.size() == section.chain.size() && closes_convex(p);
   run.first_block = static_cast<int>(shell.blocks.size());
   for (std::size_t i = 0; i + 1 < p.size(); i += kFacesInBlock) {
     const std::size_t end = std::min(i + kFacesInBlock, p.size() - 1);
@@ -110,29 +112,20 @@ struct Nearest {
 // Out of sight: no ball is as large, and what is worked out from it stays finite.
 Nearest hidden(const Shell& shell) { return {2 * shell.radius, 1, 0, Face::kTop}; }
 
-// Nearest point of a face to (x, y), how far along, and the square of its distance.
-struct Foot {
-  double along, dx, dy, d2;
-};
-inline Foot foot_on(const LifterFace& f, double x, double y) {
-  const double along = std::min(std::max((x - f.x) * f.tx + (y - f.y) * f.ty, 0.0), f.length);
-  const double dx = f.x + along * f.tx - x, dy = f.y + along * f.ty - y;
-  return {along, dx, dy, dx * dx + dy * dy};
-}
-
 struct Closest {
   int face = 0;
-  Foot foot{0, 0, 0, kInfinity};
+  Foot<double> foot{0, 0, 0, kInfinity};
 };
 
 void look_through(const Shell& shell, const FaceBlock& block, double x, double y, Closest& best) {
   for (int i = block.begin; i < block.end; ++i) {
-    const Foot foot = foot_on(shell.faces[static_cast<std::size_t>(i)], x, y);
-    if (foot.d2 < best.foot.d2) best = {i, foot};
+    const Foot<double> foot = foot_on(shell.faces[static_cast<std::size_t>(i)], x, y);
+    // Of two as near, the first: so it does not matter which block is looked at first.
+    if (foot.d2 < best.foot.d2 || (foot.d2 == best.foot.d2 && i < best.face)) best = {i, foot};
   }
 }
 
-// The nearest block first: it rules out most of the others. Equally near faces give the same point.
+// The nearest block first: it rules out most of the others.
 Closest closest_of(const Shell& shell, const Run& run, double x, double y) {
   const auto square = [&](const FaceBlock& b) { return (x - b.x) * (x - b.x) + (y - b.y) * (y - b.y); };
   int first = run.first_block;
@@ -149,7 +142,7 @@ Closest closest_of(const Shell& shell, const Run& run, double x, double y) {
   for (int b = run.first_block; b < run.last_block; ++b) {
     const FaceBlock& block = shell.blocks[static_cast<std::size_t>(b)];
     const double far = within + block.reach;
-    if (b == first || square(block) > far * far) continue;
+    if (b == first || square(block) > 1.000001 * far * far) continue;
     look_through(shell, block, x, y, best);
     within = std::sqrt(best.foot.d2);
   }
@@ -159,13 +152,13 @@ Closest closest_of(const Shell& shell, const Run& run, double x, double y) {
 // The point as the wall's nearest; `side` is 1 for a centre outside, -1 for one in the steel.
 Nearest point_of(const Shell& shell, const Closest& c, double x, double y, double side) {
   const LifterFace& f = shell.faces[static_cast<std::size_t>(c.face)];
-  const FaceEnds& ends = shell.ends[static_cast<std::size_t>(c.face)];
-  if (c.foot.along > 0 && c.foot.along < f.length)
-    return {(x - f.x) * f.nx + (y - f.y) * f.ny, -f.nx, -f.ny, ends.face};
+  const FaceCorners& ends = shell.corners[static_cast<std::size_t>(c.face)];
+  const FaceLabels& labels = shell.labels[static_cast<std::size_t>(c.face)];
+  if (c.foot.along > 0 && c.foot.along < f.length) return {out_of(f, x, y), -f.nx, -f.ny, labels.face};
   const bool start = c.foot.along <= 0;
-  const Face face = start ? ends.at_start : ends.at_end;
-  const double d = std::sqrt(c.foot.d2);
-  if (d > 0) return {side * d, side * c.foot.dx / d, side * c.foot.dy / d, face};
+  const Face face = start ? labels.at_start : labels.at_end;
+  const double d = std::sqrt(c.foot.d2), per_d = 1 / d;
+  if (d > 0) return {side * d, side * c.foot.dx * per_d, side * c.foot.dy * per_d, face};
   const double ox = start ? ends.sx : ends.ex, oy = start ? ends.sy : ends.ey, o = std::hypot(ox, oy);
   return {0, -ox / o, -oy / o, face};
 }
@@ -173,10 +166,10 @@ Nearest point_of(const Shell& shell, const Closest& c, double x, double y, doubl
 // Is the point on the free side of the outline at the point of it that is closest?
 bool in_front(const Shell& shell, const Closest& c, double x, double y) {
   const LifterFace& f = shell.faces[static_cast<std::size_t>(c.face)];
-  const FaceEnds& ends = shell.ends[static_cast<std::size_t>(c.face)];
+  const FaceCorners& ends = shell.corners[static_cast<std::size_t>(c.face)];
   if (c.foot.along <= 0) return c.foot.dx * ends.sx + c.foot.dy * ends.sy <= 0;
   if (c.foot.along >= f.length) return c.foot.dx * ends.ex + c.foot.dy * ends.ey <= 0;
-  return (x - f.x) * f.nx + (y - f.y) * f.ny >= 0;
+  return out_of(f, x, y) >= 0;
 }
 
 // Is the point in the steel of a section? The axis is not, and each crossing of the outline on the way to it tells.
@@ -216,25 +209,17 @@ Nearest nearest_on_run(const Shell& shell, const Run& run, double x, double y) {
     return in_front(shell, c, x, y) ? point_of(shell, c, x, y, 1) : from_behind(shell, run, x, y);
   }
   // The face from which the point stands out farthest holds the nearest point of a convex body, or one of its ends.
-  int nearest = 0;
+  int farthest = run.begin;
   double out = -kInfinity;
   for (int i = run.begin; i < run.end; ++i) {
-    const LifterFace& f = shell.faces[static_cast<std::size_t>(i)];
-    const double d = (x - f.x) * f.nx + (y - f.y) * f.ny;
+    const double d = out_of(shell.faces[static_cast<std::size_t>(i)], x, y);
     if (d > out) {
       out = d;
-      nearest = i;
+      farthest = i;
     }
   }
   if (out <= 0) return from_behind(shell, run, x, y);
-  const LifterFace& face = shell.faces[static_cast<std::size_t>(nearest)];
-  const FaceEnds& ends = shell.ends[static_cast<std::size_t>(nearest)];
-  const double along = (x - face.x) * face.tx + (y - face.y) * face.ty;
-  if (along >= 0 && along <= face.length) return {out, -face.nx, -face.ny, ends.face};
-  const double end = along < 0 ? 0 : face.length;
-  const double dx = face.x + end * face.tx - x, dy = face.y + end * face.ty - y;
-  const double d = std::sqrt(dx * dx + dy * dy), per_d = 1 / d;
-  return {d, dx * per_d, dy * per_d, along < 0 ? ends.at_start : ends.at_end};
+  return point_of(shell, {farthest, foot_on(shell.faces[static_cast<std::size_t>(farthest)], x, y)}, x, y, 1);
 }
 
 }  // namespace
@@ -269,6 +254,7 @@ Shell make_shell(const MillShape& shape) {
     for (const Vec2& p : section.chain)
       shell.lifter_reach = std::max(shell.lifter_reach, std::hypot(p.x() - shell.lifter_centre, p.y()));
 
+  shell.run_of.push_back(-1);
   for (int k = 0; k < shell.lifter_count; ++k) {
     shell.first_feature.push_back(static_cast<int>(shell.features.size()) + 1);
     const int section = shape.section_of[static_cast<std::size_t>(k)];
@@ -281,6 +267,7 @@ Shell make_shell(const MillShape& shape) {
       const Run& run = shell.runs[r];
       shell.features.push_back(
           {std::cos(k * shape.pitch()), std::sin(k * shape.pitch()), run.x, run.y, run.reach, static_cast<int>(r), k});
+      shell.run_of.push_back(static_cast<double>(r));
     }
   }
   shell.first_feature.push_back(static_cast<int>(shell.features.size()) + 1);
@@ -291,6 +278,7 @@ ConvexLifters convex_lifters(const Shell& shell) {
   ConvexLifters lifters;
   if (shell.runs.size() != 1 || !shell.runs[0].convex) return lifters;
   const Run& run = shell.runs[0];
+  if (run.end - run.begin > kMostFaces) return lifters;
   for (int i = run.begin; i < run.end; ++i) {
     const LifterFace& f = shell.faces[static_cast<std::size_t>(i)];
     const int k = lifters.faces++;
@@ -303,6 +291,18 @@ ConvexLifters convex_lifters(const Shell& shell) {
     lifters.length[k] = f.length;
   }
   return lifters;
+}
+
+LifterRuns lifter_runs(const Shell& shell) {
+  LifterRuns runs;
+  runs.faces = shell.faces.data();
+  runs.corners = shell.corners.data();
+  runs.blocks = shell.blocks.data();
+  runs.runs = shell.runs.data();
+  runs.count = static_cast<int>(shell.runs.size());
+  runs.run_of = shell.run_of.data();
+  runs.out_of_sight = 2 * shell.radius;
+  return runs;
 }
 
 ShellPose pose_of(double mill_angle) { return {std::cos(mill_angle), std::sin(mill_angle)}; }

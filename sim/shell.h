@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "core/mill_shape.h"
+#include "sim/lifter_run.h"
 
 // The turning shell as the balls feel it: an exact circle and, on it, the lifters' outlines.
 //
@@ -23,34 +24,9 @@ namespace tumble::sim {
 
 using tumble::Face;
 
-// A straight piece of a lifter's outline in the lifter's own frame (x along the radius through its foot's middle).
-struct LifterFace {
-  double x = 0, y = 0;    // where the face starts; the run goes from the leading to the trailing side [m]
-  double tx = 0, ty = 0;  // unit vector along it
-  double nx = 0, ny = 0;  // unit normal, out of the lifter
-  double length = 0;      // [m]
-};
-
-// What is wanted of a face once it is known to be the nearest; kept apart, so that the search reads a cache line a
-// face.
-struct FaceEnds {
-  double sx = 0, sy = 0;  // out of the lifter at the corner where it starts (sum of both normals), not normalised
-  double ex = 0, ey = 0;  // and where it ends
+// What a ball that touches the inside of a face, or the corner at either end of it, has struck.
+struct FaceLabels {
   Face face = Face::kTop, at_start = Face::kTop, at_end = Face::kTop;
-};
-
-// Faces that lie close together, with a circle around them: most are passed over at once.
-struct FaceBlock {
-  int begin = 0, end = 0;
-  double x = 0, y = 0, reach = 0;  // centre and radius [m]
-};
-
-struct Run {
-  int begin = 0, end = 0;               // its faces
-  int first_block = 0, last_block = 0;  // blocks of them, [first, last)
-  int section = 0;
-  bool convex = false;             // few faces round a convex body: the quick way
-  double x = 0, y = 0, reach = 0;  // circle around the run: centre, radius [m]
 };
 
 // A run at its place on the shell.
@@ -66,17 +42,22 @@ struct Shell {
   bool plate_covered = false;  // waves from trough to trough leave nothing of the circle
   int lifter_count = 0;        // places for lifters
   std::vector<LifterFace> faces;
-  std::vector<FaceEnds> ends;  // of each face
+  std::vector<FaceCorners> corners;  // of each face
+  std::vector<FaceLabels> labels;    // likewise
   std::vector<FaceBlock> blocks;
   std::vector<Run> runs;
   std::vector<Feature> features;               // of all lifters in order; feature f of the shell is features[f - 1]
   std::vector<int> first_feature;              // of each lifter, and one past the last
+  std::vector<double> run_of;                  // the run of each feature, for lanes; -1 of feature 0
   double lifter_centre = 0, lifter_reach = 0;  // circle that holds any lifter: its centre lies on the lifter's radius
 };
 
-// What of it the kernels can look at in lanes (sim/kernels/kernels.h); no faces if they cannot.
+// As the kernels look at it in lanes (sim/kernels/kernels.h): one convex outline, the quickest, or no faces where it is
+// not that; and the runs of any shell, which stay the shell's own.
 struct ConvexLifters;
 ConvexLifters convex_lifters(const Shell& shell);
+struct LifterRuns;
+LifterRuns lifter_runs(const Shell& shell);
 
 inline constexpr double kSeam = 0.35;  // 20 degrees [rad]
 

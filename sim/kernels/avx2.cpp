@@ -1,4 +1,5 @@
-// Compiled for AVX2: nothing may be included that other files compile too and might share (see tests/sim/kernels).
+// Compiled for AVX2: no function may come out of it that other files have too, for the linker might take this one for
+// all (tests/sim/kernel_symbols.sh looks).
 #include "sim/kernels/loops.h"
 
 namespace tumble::sim {

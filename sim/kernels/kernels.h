@@ -6,6 +6,7 @@
 #include "sim/body_effects.h"
 #include "sim/exact_sum.h"
 #include "sim/laws/contact_model.h"
+#include "sim/lifter_run.h"
 
 // The loops that a run spends its time in, for contacts and balls side by side in SIMD lanes. Each exists for every
 // instruction set that is worth it and is chosen when the program starts. All give the same bits: the operations of a
@@ -49,6 +50,18 @@ struct ConvexLifters {
   double x[kMostFaces], y[kMostFaces], tx[kMostFaces], ty[kMostFaces], nx[kMostFaces], ny[kMostFaces],
       length[kMostFaces];
   const double *cos = nullptr, *sin = nullptr;  // direction of each feature at this step, from feature 1 on
+};
+
+// The lifters' outlines of any shape, which may differ from lifter to lifter. See sim/shell.h.
+struct LifterRuns {
+  const LifterFace* faces = nullptr;
+  const FaceCorners* corners = nullptr;
+  const FaceBlock* blocks = nullptr;
+  const Run* runs = nullptr;
+  int count = 0;                                // of the runs
+  const double* run_of = nullptr;               // of each feature, from feature 0 on
+  const double *cos = nullptr, *sin = nullptr;  // direction of each feature at this step, from feature 1 on
+  double out_of_sight = 0;                      // distance that is given where a ball is not reached [m]
 };
 
 // All that the contacts of one kind have in common at one step.
@@ -136,6 +149,11 @@ struct Kernels {
   int (*touching_plate)(const ChargeView&, double shell_radius, const int* i, int n, int* hits);
   // Likewise, of the balls i that touch the convex lifters j.
   int (*touching_lifters)(const ChargeView&, const ConvexLifters&, const int* i, const int* j, int n, int* hits);
+
+  // Where the balls i meet the runs j, n <= kBlock of them; out of sight where they do not touch. Returns the bits of
+  // those that it cannot tell, for only the whole section can: balls behind a run.
+  std::uint64_t (*nearest_on_runs)(const ChargeView&, const LifterRuns&, const int* i, const int* j, int n,
+                                   WallPoints&);
 
   // The next step of contacts that have touched before. All of them in one block: k / kBlock is the same. `points` are
   // not looked at for convex lifters.

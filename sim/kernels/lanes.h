@@ -25,6 +25,8 @@ struct Lanes<double> {
   static double load(const double* p) { return *p; }
   static void store(double* p, double v) { *p = v; }
   static double gather(const double* p, const int* at) { return p[*at]; }
+  // Whole numbers, as what to gather by.
+  static void store_ints(int* p, double v) { *p = static_cast<int>(v); }
   static unsigned bits(bool mask) { return mask; }
   // Lanes k of those whose bit is set, as from + k, to `out`; how many. May write kSize of them.
   static int append(int* out, int from, unsigned bits) {
@@ -82,6 +84,14 @@ struct Lanes<xsimd::batch<double, A>> {
     else
 #endif
       return _mm256_i32gather_pd(p, _mm_loadu_si128(reinterpret_cast<const __m128i*>(at)), 8);
+  }
+  static void store_ints(int* p, const Batch& v) {
+#ifdef __AVX512F__
+    if constexpr (kSize == 8)
+      _mm256_storeu_si256(reinterpret_cast<__m256i*>(p), _mm512_cvttpd_epi32(v));
+    else
+#endif
+      _mm_storeu_si128(reinterpret_cast<__m128i*>(p), _mm256_cvttpd_epi32(v));
   }
   static unsigned bits(const Mask& mask) {
 #ifdef __AVX512F__

@@ -108,6 +108,20 @@ struct Loops {
     });
   }
 
+  [[gnu::flatten]] static std::uint64_t nearest_of_runs(const ChargeView& c, const LifterRuns& lifters, const int* i,
+                                                        const int* j, int n, WallPoints& out) {
+    std::uint64_t unsure = 0;
+    for (int k = 0; k < n; k += L::kSize) {
+      const RunPoint<Real> p =
+          nearest_on_runs(lifters, j + k, L::gather(c.x, i + k), L::gather(c.y, i + k), L::gather(c.radius, i + k));
+      L::store(out.distance + k, p.at.distance);
+      L::store(out.nx + k, p.at.nx);
+      L::store(out.ny + k, p.at.ny);
+      unsure |= std::uint64_t{L::bits(p.unsure) & L::below(n - k)} << k;
+    }
+    return unsure;
+  }
+
   // `meet(k)`: how contact k meets; `push_of` what follows from the reaction.
   template <bool kPlain, bool kAtWall, class Meet, class PushOf>
   static void block(const ContactModel& law, double time_step, const ContactColumns& columns, int first, int last,
@@ -283,8 +297,19 @@ struct Loops {
 template <class Real>
 constexpr Kernels kernels_of(const char* name) {
   using Loop = Loops<Real>;
-  return {name,        Loop::near_of, Loop::gaps,    Loop::touching_pairs, Loop::touching_plate, Loop::touching_lifters,
-          Loop::balls, Loop::plate,   Loop::lifters, Loop::scatter,        Loop::drift,          Loop::kick};
+  return {name,
+          Loop::near_of,
+          Loop::gaps,
+          Loop::touching_pairs,
+          Loop::touching_plate,
+          Loop::touching_lifters,
+          Loop::nearest_of_runs,
+          Loop::balls,
+          Loop::plate,
+          Loop::lifters,
+          Loop::scatter,
+          Loop::drift,
+          Loop::kick};
 }
 
 }  // namespace tumble::sim

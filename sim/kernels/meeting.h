@@ -112,12 +112,89 @@ NearestPoint<Real> nearest_on_convex(const ConvexLifters& lifters, const int* fe
     length = select(farther, Real(lifters.length[f]), length);
   }
   const Real along = (u - fx) * tx + (v - fy) * ty;
-  const Real end = select(along < Real(0), Real(0), length);
+  const Real end = select(along > Real(0), length, Real(0));
   const Real dx = fx + end * tx - u, dy = fy + end * ty - v;
   const Real d = sqrt(dx * dx + dy * dy), per_d = 1 / d;
-  const auto on_face = ((along >= Real(0)) & (along <= length)) | (out <= Real(0));
+  const auto on_face = ((along > Real(0)) & (along < length)) | (out <= Real(0));
   const Real px = select(on_face, -nx, dx * per_d), py = select(on_face, -ny, dy * per_d);
   return {select(on_face, out, d), px * cos - py * sin, px * sin + py * cos};
+}
+
+template <class Real>
+struct RunPoint {
+  NearestPoint<Real> at;
+  typename Lanes<Real>::Mask unsure;  // within reach, but behind the run or on it
+};
+
+// As nearest_on_wall of sim/shell.h, number by number, for balls that touch what they see.
+template <class Real>
+RunPoint<Real> nearest_on_runs(const LifterRuns& lifters, const int* feature, const Real& x, const Real& y,
+                               const Real& radius) {
+  using L = Lanes<Real>;
+  using Mask = typename L::Mask;
+  using std::max;
+  using std::min;
+  using std::sqrt;
+  const Real cos = L::gather(lifters.cos - 1, feature), sin = L::gather(lifters.sin - 1, feature);
+  const Real u = x * cos + y * sin, v = y * cos - x * sin;
+  const Real of_run = L::gather(lifters.run_of, feature), reach = 1.000001 * radius, reach2 = reach * reach;
+  const auto reaches = [&](const auto& circle) {
+    const Real dx = u - circle.x, dy = v - circle.y, span = reach + circle.reach;
+    return dx * dx + dy * dy <= span * span;
+  };
+  Real face = 0;  // the nearest
+  Mask near = Mask(false);
+  for (int r = 0; r < lifters.count; ++r) {
+    const Run& run = lifters.runs[r];
+    const Mask mine = (of_run == Real(r)) & reaches(run);
+    if (L::bits(mine) == 0) continue;
+    if (run.convex) {
+      Real out = -lifters.out_of_sight;
+      for (int k = run.begin; k < run.end; ++k) {
+        const LifterFace& f = lifters.faces[k];
+        const Real d = out_of(f, u, v);
+        face = select(mine & (d > out), Real(f.number), face);
+        out = max(out, d);
+      }
+      near = near | (mine & (out < reach));
+      continue;
+    }
+    Real d2 = reach2;
+    for (int b = run.first_block; b < run.last_block; ++b) {
+      if (L::bits(mine & reaches(lifters.blocks[b])) == 0) continue;
+      for (int k = lifters.blocks[b].begin; k < lifters.blocks[b].end; ++k) {
+        const LifterFace& f = lifters.faces[k];
+        const Real square = foot_on(f, u, v).d2;
+        face = select(mine & (square < d2), Real(f.number), face);
+        d2 = min(d2, square);
+      }
+    }
+    near = near | (mine & (d2 < reach2));
+  }
+  if (L::bits(near) == 0) return {{Real(lifters.out_of_sight), Real(1), Real(0)}, near};
+
+  int at[L::kSize];
+  L::store_ints(at, face * Real(sizeof(LifterFace) / sizeof(double)));
+  const LifterFace* faces = lifters.faces;
+  const BasicFace<Real> f{
+      L::gather(&faces->x, at),  L::gather(&faces->y, at),  L::gather(&faces->tx, at),     L::gather(&faces->ty, at),
+      L::gather(&faces->nx, at), L::gather(&faces->ny, at), L::gather(&faces->length, at), face};
+  L::store_ints(at, face * Real(sizeof(FaceCorners) / sizeof(double)));
+  const FaceCorners* corners = lifters.corners;
+  const Foot<Real> foot = foot_on(f, u, v);
+  const Mask found = near & (foot.d2 < reach2);
+  const Mask at_start = foot.along <= Real(0), at_corner = at_start | (foot.along >= f.length);
+  const Real cx = select(at_start, L::gather(&corners->sx, at), L::gather(&corners->ex, at));
+  const Real cy = select(at_start, L::gather(&corners->sy, at), L::gather(&corners->ey, at));
+  const Real out = out_of(f, u, v);
+  const Real in_front = select(at_corner, -(foot.dx * cx + foot.dy * cy), out);
+  const Real d = sqrt(foot.d2), per_d = 1 / d;
+  const Real distance = select(at_corner, d, out);
+  const Real px = select(at_corner, foot.dx * per_d, -f.nx), py = select(at_corner, foot.dy * per_d, -f.ny);
+  const Mask unsure = found & ((in_front < Real(0)) | (foot.d2 <= Real(0)));
+  return {{select(found, distance, Real(lifters.out_of_sight)), select(found, px * cos - py * sin, Real(1)),
+           select(found, px * sin + py * cos, Real(0))},
+          unsure};
 }
 
 // What a contact does to its two bodies, every number rounded for the sums it goes into.

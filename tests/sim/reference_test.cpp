@@ -10,6 +10,7 @@
 #include "sim/running_mill.h"
 #include "tests/support/effects.h"
 #include "tests/support/mills.h"
+#include "tests/support/shells.h"
 
 namespace tumble::sim {
 namespace {
@@ -66,6 +67,16 @@ TEST(Reference, GivesTheSameBits) {
     config.mill.lifters.profile = profile;
     config.contact.friction = 0.3;
     expect_same_bits(config, 5000);
+  }
+}
+
+// Lifters of which the balls see several runs, long ones, or different ones.
+TEST(Reference, GivesTheSameBitsOnEveryShell) {
+  for (NamedMill mill : mills_of_every_profile()) {
+    SCOPED_TRACE(mill.name);
+    mill.config.charge.count = 25;
+    mill.config.contact.friction = 0.3;
+    expect_same_bits(mill.config, 1500);
   }
 }
 
