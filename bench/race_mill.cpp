@@ -13,6 +13,7 @@
 #include <CLI/CLI.hpp>
 #include <chrono>
 #include <cmath>
+#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -159,7 +160,20 @@ void print_result(const Options& o, std::size_t balls, double torque, const Stop
       balls, o.steps, ball_steps, torque, user, system, wall, ball_steps / user, now.usage.ru_maxrss * 1024);
 }
 
-void run_as_a_user(const Options& o, const Config& config, const Checkpoint& start) {
+// Keeps the start in a file, where it takes no memory of the run.
+StoredCheckpoint put_aside(const Checkpoint& start) {
+  const std::shared_ptr<std::FILE> file(std::tmpfile(), [](std::FILE* f) { f ? std::fclose(f) : 0; });
+  if (!file) throw WorkError(fs::temp_directory_path().string(), "takes no file");
+  start.tell(
+      [&](std::span<const double> words) { std::fwrite(words.data(), sizeof(double), words.size(), file.get()); });
+  std::rewind(file.get());
+  return {start.frames_written, start.size, [file](std::span<double> words) {
+            if (std::fread(words.data(), sizeof(double), words.size(), file.get()) != words.size())
+              throw WorkError(fs::temp_directory_path().string(), "could not keep the start");
+          }};
+}
+
+void run_as_a_user(const Options& o, const Config& config, StoredCheckpoint start) {
   // The name of a scratch file is ours alone: races run side by side.
   const bool scratch = o.frames.empty(), none = o.frames == "none";
   const fs::path file = scratch ? fs::temp_directory_path() / fmt::format("race_mill_{}.h5", ::getpid()) : o.frames;
@@ -181,7 +195,7 @@ void run_as_a_user(const Options& o, const Config& config, const Checkpoint& sta
     };
     sink.checkpoint = [&](const Checkpoint& c) { writer->write(c); };
   }
-  const RunResult result = sim::simulate(config, sink, &start);
+  const RunResult result = sim::simulate(config, sink, std::move(start));
   if (writer) writer->finish(result);
   print_result(o, balls, none ? kNotGiven : torque / double(frames), stopwatch);
   if (scratch) fs::remove(file);
@@ -226,9 +240,9 @@ void race(const Options& o) {
   if (const int n = start.mill.model.steps_per_frame; o.steps < n || o.steps % n != 0)
     throw InputError("STEPS", fmt::format("is {}; give a multiple of the {} steps from frame to frame", o.steps, n));
   if (o.alone()) return run_alone(o, c, start.mill);
-  const Checkpoint checkpoint{0, sim::words_of(start)};
+  StoredCheckpoint checkpoint = put_aside(sim::checkpoint_of(start));
   start = {};
-  run_as_a_user(o, config, checkpoint);
+  run_as_a_user(o, config, std::move(checkpoint));
 }
 
 }  // namespace

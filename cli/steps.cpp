@@ -9,6 +9,7 @@
 #include <fstream>
 #include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "core/angle.h"
@@ -88,21 +89,22 @@ Marks marks_at(const ChargeMotion& truth, double time, double frames_per_second)
 }  // namespace
 
 void simulate_to_file(const Config& config, const fs::path& output, bool resume, const CommonOptions& options) {
-  std::optional<Checkpoint> checkpoint;
+  std::optional<StoredCheckpoint> checkpoint;
   if (resume) checkpoint = io::read_checkpoint(output, config);
+  const bool resumed = checkpoint.has_value();
   std::unique_ptr<io::RunWriter> writer;
   ProgressLine line(options, "simulating",
                     "the run so far is kept; go on with: tumble simulate ... -o " + output.string() + " --resume");
   sim::RunSink sink;
   sink.setup = [&](const RunSetup& setup) {
-    writer = std::make_unique<io::RunWriter>(
-        checkpoint ? io::RunWriter::resume(output, setup)
-                   : io::RunWriter(output, setup, sim::checkpoint_capacity(setup.config)));
+    writer =
+        std::make_unique<io::RunWriter>(resumed ? io::RunWriter::resume(output, setup)
+                                                : io::RunWriter(output, setup, sim::checkpoint_capacity(setup.config)));
   };
   sink.frame = [&](const Frame& frame) { writer->write(frame); };
   sink.checkpoint = [&](const Checkpoint& c) { writer->write(c); };
   sink.progress = line.callback();
-  const RunResult result = sim::simulate(config, sink, checkpoint ? &*checkpoint : nullptr);
+  const RunResult result = sim::simulate(config, sink, std::move(checkpoint));
   writer->finish(result);
   if (!result.caveat.empty()) say(options, "note: " + result.caveat);
 }

@@ -41,6 +41,19 @@ void InPlaceFile::write(std::uint64_t offset, const void* bytes, std::size_t siz
   }
 }
 
+void InPlaceFile::read(std::uint64_t offset, void* bytes, std::size_t size) const {
+  char* to = static_cast<char*>(bytes);
+  while (size > 0) {
+    const ssize_t got = pread(file_, to, size, static_cast<off_t>(offset));
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0) fail("cannot be read", errno);
+    if (got == 0) throw WorkError(shown_.string(), "is cut off");
+    to += got;
+    offset += static_cast<std::uint64_t>(got);
+    size -= static_cast<std::size_t>(got);
+  }
+}
+
 void InPlaceFile::claim() const {
   if (flock(file_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
     throw WorkError(shown_.string(), "is in use by another program; wait for it or choose another output");

@@ -16,6 +16,7 @@ class InPlaceFile {
   InPlaceFile& operator=(InPlaceFile&& other) noexcept;
 
   void write(std::uint64_t offset, const void* bytes, std::size_t size) const;
+  void read(std::uint64_t offset, void* bytes, std::size_t size) const;
 
   // One writer at a time. A shared lock is kept, so that HDF5 programs may look at the run while it goes on.
   void claim() const;

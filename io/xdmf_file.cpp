@@ -47,9 +47,8 @@ std::string attribute(const char* name, const char* type, const std::string& ite
 
 }  // namespace
 
-void write_xdmf(const std::filesystem::path& run_file, const RunSetup& setup) {
+void write_xdmf(const std::filesystem::path& run_file, std::int64_t frame_count, std::size_t balls) {
   const std::string file = escaped(run_file.filename().string());
-  const std::size_t n = setup.balls.size();
   std::vector<double> time;
   {
     const auto held = hdf5::lock();
@@ -59,16 +58,18 @@ void write_xdmf(const std::filesystem::path& run_file, const RunSetup& setup) {
   std::string text = "<?xml version=\"1.0\"?>\n<Xdmf Version=\"2.0\"><Domain>\n";
   for (const auto& array : arrays)
     text += whole(file, std::string(array.path) + "/value",
-                  fmt::format("{} {}{}", setup.frame_count, n, array.second ? " 2" : ""), 4);
+                  fmt::format("{} {}{}", frame_count, balls, array.second ? " 2" : ""), 4);
   text += "\n<Grid Name=\"balls\" GridType=\"Collection\" CollectionType=\"Temporal\">\n";
   for (std::size_t k = 0; k < time.size(); ++k)
     text += fmt::format(
                 R"(<Grid Name="frame"><Time Value="{}"/><Topology TopologyType="Polyvertex" NumberOfElements="{}"/>)"
                 R"(<Geometry GeometryType="XY">{}</Geometry>)",
-                time[k], n, slab(1, k, n, true)) +
-            attribute("velocity", "Matrix", slab(2, k, n, true)) + attribute("angle", "Scalar", slab(3, k, n, false)) +
-            attribute("angular_velocity", "Scalar", slab(4, k, n, false)) +
-            attribute("radius", "Scalar", whole(file, "particles/balls/radius", std::to_string(n), 8)) + "</Grid>\n";
+                time[k], balls, slab(1, k, balls, true)) +
+            attribute("velocity", "Matrix", slab(2, k, balls, true)) +
+            attribute("angle", "Scalar", slab(3, k, balls, false)) +
+            attribute("angular_velocity", "Scalar", slab(4, k, balls, false)) +
+            attribute("radius", "Scalar", whole(file, "particles/balls/radius", std::to_string(balls), 8)) +
+            "</Grid>\n";
   text += "</Grid></Domain></Xdmf>\n";
   std::filesystem::path path = run_file;
   path.replace_extension(".xdmf");
