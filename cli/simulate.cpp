@@ -1,16 +1,20 @@
+#include <filesystem>
 #include <memory>
 
 #include "cli/options.h"
 #include "cli/run_summary.h"
-#include "cli/steps.h"
+#include "cli/simulation.h"
 #include "cli/verbs.h"
 #include "core/error.h"
 #include "core/parallel_for.h"
 #include "io/config_file.h"
 #include "io/output.h"
+#include "io/run_file.h"
 
 namespace tumble::cli {
 namespace {
+
+namespace fs = std::filesystem;
 
 struct Options : CommonOptions {
   fs::path config, output;

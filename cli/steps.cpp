@@ -8,8 +8,6 @@
 #include <exception>
 #include <fstream>
 #include <memory>
-#include <optional>
-#include <utility>
 #include <vector>
 
 #include "core/angle.h"
@@ -17,7 +15,6 @@
 #include "core/parallel_for.h"
 #include "io/image_file.h"
 #include "io/output.h"
-#include "sim/simulator.h"
 
 namespace tumble::cli {
 namespace {
@@ -87,27 +84,6 @@ Marks marks_at(const ChargeMotion& truth, double time, double frames_per_second)
 }
 
 }  // namespace
-
-void simulate_to_file(const Config& config, const fs::path& output, bool resume, const CommonOptions& options) {
-  std::optional<StoredCheckpoint> checkpoint;
-  if (resume) checkpoint = io::read_checkpoint(output, config);
-  const bool resumed = checkpoint.has_value();
-  std::unique_ptr<io::RunWriter> writer;
-  ProgressLine line(options, "simulating",
-                    "the run so far is kept; go on with: tumble simulate ... -o " + output.string() + " --resume");
-  sim::RunSink sink;
-  sink.setup = [&](const RunSetup& setup) {
-    writer =
-        std::make_unique<io::RunWriter>(resumed ? io::RunWriter::resume(output, setup)
-                                                : io::RunWriter(output, setup, sim::checkpoint_capacity(setup.config)));
-  };
-  sink.frame = [&](const Frame& frame) { writer->write(frame); };
-  sink.checkpoint = [&](const Checkpoint& c) { writer->write(c); };
-  sink.progress = line.callback();
-  const RunResult result = sim::simulate(config, sink, std::move(checkpoint));
-  writer->finish(result);
-  if (!result.caveat.empty()) say(options, "note: " + result.caveat);
-}
 
 ChargeMotion measure_run(const io::RunReader& run, const CommonOptions& options) {
   ProgressLine line(options, "reading the run", "nothing was written");
