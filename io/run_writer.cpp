@@ -438,6 +438,7 @@ RunWriter RunWriter::resume(const fs::path& path, const RunSetup& setup) {
   }
   impl->file = InPlaceFile(impl->part, impl->part);
   impl->file.claim();
+  impl->file.reserve();
   impl->drop_frames_from(impl->last_slot.frames_written);
   return RunWriter(std::move(impl));
 }

@@ -412,17 +412,25 @@ TEST_F(RunFile, FullDiskNamesTheReasonAndKeepsTheFrames) {
             }),
             0);
   EXPECT_TRUE(fs::is_empty(folder_));
-  // In the middle, where the disk gave no promise: what was written stays readable.
+  // In the middle, where the disk did not keep its promise: what was written stays readable.
+  constexpr std::size_t kMany = 2000;  // frames of fewer go through memory
+  RunSetup large = setup;
+  large.balls = {std::vector<double>(kMany, 0.012), std::vector<double>(kMany, 0.06)};
+  const auto large_frame = [](std::int64_t k) {
+    Frame frame = frame_number(k);
+    for (auto* v : {&frame.x, &frame.y, &frame.vx, &frame.vy, &frame.angle, &frame.spin}) v->resize(kMany, 0.5);
+    return frame;
+  };
   EXPECT_EQ(in_child([&] {
-              RunWriter writer(run_, setup, kWords);
-              for (int k = 0; k < 5; ++k) writer.write(frame_number(k));
+              RunWriter writer(run_, large, kWords);
+              for (int k = 0; k < 5; ++k) writer.write(large_frame(k));
               limit_size(4096);
-              return complains([&] { writer.write(frame_number(5)); }) ? 0 : 1;
+              return complains([&] { writer.write(large_frame(5)); }) ? 0 : 1;
             }),
             0);
   const RunReader reader(part_);
   ASSERT_EQ(reader.frame_count(), 5u);
-  expect_frame(reader.frame(4), frame_number(4));
+  expect_frame(reader.frame(4), large_frame(4));
 }
 
 }  // namespace
