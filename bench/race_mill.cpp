@@ -22,6 +22,7 @@
 
 #include "core/effects.h"
 #include "core/error.h"
+#include "core/large_arrays.h"
 #include "core/parallel_for.h"
 #include "core/units.h"
 #include "io/run_file.h"
@@ -125,7 +126,7 @@ sim::RunState state_of(PeerCase& c, const Config& config, int threads) {
       charge.spin[i] = b.spin;
     }
   }
-  for (auto& [type, same] : c.classes) same.balls = {};  // not to be counted as memory of the run
+  for (auto& [type, same] : c.classes) same.balls = std::vector<PeerBall>();  // not to be counted as memory of the run
   sim::RunState run;
   run.mill = sim::start_mill(model, std::move(charge), threads);
   run.mill.step = run.averaging_from = step;
@@ -233,6 +234,7 @@ void run_alone(const Options& o, const PeerCase& c, sim::RunningMill& mill) {
 
 void race(const Options& o) {
   limit_threads(o.threads);
+  give_large_arrays_back();
   PeerCase c = read_case(o.folder);
   const Config config = config_of(c, o);
   check_complete(config);
