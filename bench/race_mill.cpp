@@ -13,6 +13,7 @@
 #include <CLI/CLI.hpp>
 #include <chrono>
 #include <cmath>
+#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -21,6 +22,7 @@
 
 #include "core/effects.h"
 #include "core/error.h"
+#include "core/large_arrays.h"
 #include "core/parallel_for.h"
 #include "core/units.h"
 #include "io/run_file.h"
@@ -124,7 +126,7 @@ sim::RunState state_of(PeerCase& c, const Config& config, int threads) {
       charge.spin[i] = b.spin;
     }
   }
-  for (auto& [type, same] : c.classes) same.balls = {};  // not to be counted as memory of the run
+  for (auto& [type, same] : c.classes) same.balls = std::vector<PeerBall>();  // not to be counted as memory of the run
   sim::RunState run;
   run.mill = sim::start_mill(model, std::move(charge), threads);
   run.mill.step = run.averaging_from = step;
@@ -159,7 +161,20 @@ void print_result(const Options& o, std::size_t balls, double torque, const Stop
       balls, o.steps, ball_steps, torque, user, system, wall, ball_steps / user, now.usage.ru_maxrss * 1024);
 }
 
-void run_as_a_user(const Options& o, const Config& config, const Checkpoint& start) {
+// Keeps the start in a file, where it takes no memory of the run.
+StoredCheckpoint put_aside(const Checkpoint& start) {
+  const std::shared_ptr<std::FILE> file(std::tmpfile(), [](std::FILE* f) { f ? std::fclose(f) : 0; });
+  if (!file) throw WorkError(fs::temp_directory_path().string(), "takes no file");
+  start.tell(
+      [&](std::span<const double> words) { std::fwrite(words.data(), sizeof(double), words.size(), file.get()); });
+  std::rewind(file.get());
+  return {start.frames_written, start.size, [file](std::span<double> words) {
+            if (std::fread(words.data(), sizeof(double), words.size(), file.get()) != words.size())
+              throw WorkError(fs::temp_directory_path().string(), "could not keep the start");
+          }};
+}
+
+void run_as_a_user(const Options& o, const Config& config, StoredCheckpoint start) {
   // The name of a scratch file is ours alone: races run side by side.
   const bool scratch = o.frames.empty(), none = o.frames == "none";
   const fs::path file = scratch ? fs::temp_directory_path() / fmt::format("race_mill_{}.h5", ::getpid()) : o.frames;
@@ -181,7 +196,7 @@ void run_as_a_user(const Options& o, const Config& config, const Checkpoint& sta
     };
     sink.checkpoint = [&](const Checkpoint& c) { writer->write(c); };
   }
-  const RunResult result = sim::simulate(config, sink, &start);
+  const RunResult result = sim::simulate(config, sink, std::move(start));
   if (writer) writer->finish(result);
   print_result(o, balls, none ? kNotGiven : torque / double(frames), stopwatch);
   if (scratch) fs::remove(file);
@@ -219,6 +234,7 @@ void run_alone(const Options& o, const PeerCase& c, sim::RunningMill& mill) {
 
 void race(const Options& o) {
   limit_threads(o.threads);
+  give_large_arrays_back();
   PeerCase c = read_case(o.folder);
   const Config config = config_of(c, o);
   check_complete(config);
@@ -226,9 +242,9 @@ void race(const Options& o) {
   if (const int n = start.mill.model.steps_per_frame; o.steps < n || o.steps % n != 0)
     throw InputError("STEPS", fmt::format("is {}; give a multiple of the {} steps from frame to frame", o.steps, n));
   if (o.alone()) return run_alone(o, c, start.mill);
-  const Checkpoint checkpoint{0, sim::words_of(start)};
+  StoredCheckpoint checkpoint = put_aside(sim::checkpoint_of(start));
   start = {};
-  run_as_a_user(o, config, checkpoint);
+  run_as_a_user(o, config, std::move(checkpoint));
 }
 
 }  // namespace

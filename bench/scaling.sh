@@ -86,7 +86,6 @@ memory() {
   local peak
   gen lattice 1000000 "$work/lattice"
   gen export "$work/lattice/lattice.csv" "$work/lattice"
-  sed -i 's/^nlift .*/nlift 1000/' "$work/lattice/case.txt"  # a run file has room for 1024
   peak=$(mill "$work/lattice" 200 1 --kernels best | value peak_bytes)
   echo "memory, 1000000 balls, the mill alone: $((peak / 1000000)) bytes a ball"
   peak=$(mill "$work/lattice" 200 | value peak_bytes)

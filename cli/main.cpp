@@ -1,69 +1,44 @@
-#include <CLI/CLI.hpp>
-#include <cstdio>
-#include <exception>
-#include <new>
-#include <string>
+#include <unistd.h>
 
-#include "cli/console.h"
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <string_view>
+
+#include "cli/program.h"
 #include "cli/verbs.h"
-#include "core/error.h"
-#include "core/version.h"
 
+// Films and pictures need OpenCV, libav and OSMesa, which bring 250 libraries: to load them takes a quarter of a second
+// and 120 MB, more than a small mill's simulation. So `tumble` is two programs: this one has the verbs without
+// pictures, and `tumble-pictures` beside it has all of them and takes over for everything else. Rejected: to load the
+// pictures' half with dlopen, which would hold the rooms' state (locks, threads, signals) twice in one process.
 namespace {
 
-// One line, whatever was caught: place, what is wrong, what would be right.
-int fail(const std::string& line, int status) {
-  std::string flat = line;
-  for (char& c : flat)
-    if (c == '\n' || c == '\r') c = ' ';
-  while (!flat.empty() && flat.back() == ' ') flat.pop_back();
-  std::fprintf(stderr, "tumble: %s\n", flat.c_str());
-  return status;
-}
+using namespace tumble::cli;
+struct Verb {
+  std::string_view name;
+  AddVerb add;
+};
+constexpr Verb kWithoutPictures[] = {
+    {"simulate", add_simulate}, {"sweep", add_sweep}, {"parameters", add_parameters},
+    {"effects", add_effects},   {"shell", add_shell},
+};
 
-// CLI11 would only say that a verb is missing.
-void check_verb(const CLI::App& app, const std::string& word) {
-  if (word.empty() || word[0] == '-') return;
-  std::string known;
-  for (const CLI::App* verb : app.get_subcommands([](const CLI::App*) { return true; })) {
-    if (verb->get_name() == word) return;
-    known += (known.empty() ? "" : ", ") + verb->get_name();
-  }
-  throw tumble::InputError(word, "unknown verb; known: " + known);
+int hand_over(char** argv) {
+  std::error_code error;
+  const std::filesystem::path self = std::filesystem::read_symlink("/proc/self/exe", error);
+  const std::filesystem::path pictures = self.parent_path() / "tumble-pictures";
+  execv(pictures.c_str(), argv);
+  return fail(pictures.string() + ": cannot be run (" + std::strerror(errno) + "); it belongs beside " + self.string(),
+              1);
 }
 
 }  // namespace
 
-int main(int argc, char** argv) try {
-  CLI::App app{"tumble: simulate, animate, film back and compare the charge of a tumbling mill", "tumble"};
-  app.set_version_flag("--version", std::string("tumble ") + tumble::kVersion);
-  app.require_subcommand(1);
-  app.failure_message([](const CLI::App*, const CLI::Error& e) { return std::string(e.what()) + "\n"; });
-  tumble::cli::add_run(app);
-  tumble::cli::add_simulate(app);
-  tumble::cli::add_render(app);
-  tumble::cli::add_analyse(app);
-  tumble::cli::add_parameters(app);
-  tumble::cli::add_sweep(app);
-  tumble::cli::add_calibrate(app);
-  tumble::cli::add_effects(app);
-  tumble::cli::add_shell(app);
-  app.footer("Example: tumble run examples/lab_mill_55cm.toml -o out\nEach verb has its own help: tumble run --help");
-
-  try {
-    tumble::cli::catch_signals();
-    if (argc > 1) check_verb(app, argv[1]);
-    app.parse(argc, argv);
-  } catch (const CLI::Success& e) {  // --help, --version
-    return app.exit(e);
-  } catch (const CLI::ParseError& e) {
-    return fail(std::string(e.what()) + "; see tumble --help", 2);
-  } catch (const tumble::Error& e) {
-    return fail(e.what(), static_cast<int>(e.kind()));
-  }
-  return 0;
-} catch (const std::bad_alloc&) {
-  return fail("out of memory; use fewer balls or frames", 1);
-} catch (const std::exception& e) {
-  return fail(e.what(), 1);
+int main(int argc, char** argv) {
+  const std::string_view word = argc > 1 ? argv[1] : "";
+  for (const Verb& verb : kWithoutPictures)
+    if (verb.name == word) return run_program(argc, argv, {&verb.add, 1});
+  if (word == "--version" && argc == 2) return run_program(argc, argv, {});
+  return hand_over(argv);
 }

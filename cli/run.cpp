@@ -3,6 +3,7 @@
 
 #include "cli/options.h"
 #include "cli/run_summary.h"
+#include "cli/simulation.h"
 #include "cli/steps.h"
 #include "cli/verbs.h"
 #include "core/parallel_for.h"

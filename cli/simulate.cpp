@@ -1,16 +1,21 @@
+#include <filesystem>
 #include <memory>
 
 #include "cli/options.h"
 #include "cli/run_summary.h"
-#include "cli/steps.h"
+#include "cli/simulation.h"
 #include "cli/verbs.h"
 #include "core/error.h"
+#include "core/large_arrays.h"
 #include "core/parallel_for.h"
 #include "io/config_file.h"
 #include "io/output.h"
+#include "io/run_file.h"
 
 namespace tumble::cli {
 namespace {
+
+namespace fs = std::filesystem;
 
 struct Options : CommonOptions {
   fs::path config, output;
@@ -20,6 +25,7 @@ struct Options : CommonOptions {
 
 void simulate(const Options& o) {
   limit_threads(o.threads);
+  give_large_arrays_back();
   const Config config = io::read_config(o.config, o.sets);
   check_complete(config);
   io::check_not_input(o.output, o.config);

@@ -8,7 +8,6 @@
 #include <exception>
 #include <fstream>
 #include <memory>
-#include <optional>
 #include <vector>
 
 #include "core/angle.h"
@@ -16,7 +15,6 @@
 #include "core/parallel_for.h"
 #include "io/image_file.h"
 #include "io/output.h"
-#include "sim/simulator.h"
 
 namespace tumble::cli {
 namespace {
@@ -86,26 +84,6 @@ Marks marks_at(const ChargeMotion& truth, double time, double frames_per_second)
 }
 
 }  // namespace
-
-void simulate_to_file(const Config& config, const fs::path& output, bool resume, const CommonOptions& options) {
-  std::optional<Checkpoint> checkpoint;
-  if (resume) checkpoint = io::read_checkpoint(output, config);
-  std::unique_ptr<io::RunWriter> writer;
-  ProgressLine line(options, "simulating",
-                    "the run so far is kept; go on with: tumble simulate ... -o " + output.string() + " --resume");
-  sim::RunSink sink;
-  sink.setup = [&](const RunSetup& setup) {
-    writer = std::make_unique<io::RunWriter>(
-        checkpoint ? io::RunWriter::resume(output, setup)
-                   : io::RunWriter(output, setup, sim::checkpoint_capacity(setup.config)));
-  };
-  sink.frame = [&](const Frame& frame) { writer->write(frame); };
-  sink.checkpoint = [&](const Checkpoint& c) { writer->write(c); };
-  sink.progress = line.callback();
-  const RunResult result = sim::simulate(config, sink, checkpoint ? &*checkpoint : nullptr);
-  writer->finish(result);
-  if (!result.caveat.empty()) say(options, "note: " + result.caveat);
-}
 
 ChargeMotion measure_run(const io::RunReader& run, const CommonOptions& options) {
   ProgressLine line(options, "reading the run", "nothing was written");

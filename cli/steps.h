@@ -10,13 +10,11 @@
 #include "io/run_file.h"
 #include "render/renderer.h"
 
-// The steps of the one path, each from files to files, shared by the verbs and by `tumble run` that strings them up.
+// The steps of the one path that have to do with pictures, each from files to files, shared by the verbs and by `tumble
+// run` that strings them up.
 namespace tumble::cli {
 
 namespace fs = std::filesystem;
-
-// Simulates into `output`; with `resume`, goes on with `output`.part where there is one.
-void simulate_to_file(const Config& config, const fs::path& output, bool resume, const CommonOptions& options);
 
 // The charge's true motion, from a run file.
 ChargeMotion measure_run(const io::RunReader& run, const CommonOptions& options);

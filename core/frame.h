@@ -87,10 +87,4 @@ struct RunResult {  // known after the last frame
   std::string caveat;              // one sentence for the user where something is not to be trusted, else empty
 };
 
-// All that a simulation needs to go on bit-identically; the words are the simulator's own affair.
-struct Checkpoint {
-  std::int64_t frames_written = 0;
-  std::vector<double> words;
-};
-
 }  // namespace tumble

@@ -92,7 +92,7 @@ struct RunReader::Impl {
     result.steady = hdf5::read_scalar<std::int64_t>(file, "parameters/steady") != 0;
     result.caveat = hdf5::read_string(file, "parameters/caveat");
     for (const ResultArray& array : all_result_arrays())
-      array.of(result) = hdf5::read_array<double>(file, array.path, array.space);
+      array.of(result) = hdf5::read_array<double>(file, array.path, space_for(array, setup.config));
   }
 
   Frame without_balls(std::size_t index) const {

@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/checkpoint.h"
 #include "core/frame.h"
 
 // RUN.h5: HDF5 in H5MD 1.1 layout; docs/run-file.md.
@@ -33,7 +34,7 @@ class RunWriter {
 
 // The newest checkpoint of the interrupted run beside `path`, if there is one. Throws InputError where that run has
 // another config or was written by another version.
-std::optional<Checkpoint> read_checkpoint(const std::filesystem::path& path, const Config& config);
+std::optional<StoredCheckpoint> read_checkpoint(const std::filesystem::path& path, const Config& config);
 
 // A run that was interrupted between its last frame and its final name: gives it that name. False where there is none.
 bool adopt_complete_run(const std::filesystem::path& path, const Config& config);

@@ -1,5 +1,7 @@
 #include "io/run_layout.h"
 
+#include <algorithm>
+
 namespace tumble::io::run_layout {
 namespace {
 
@@ -20,8 +22,8 @@ std::vector<double>& reach_face(RunResult& result) {
   return (result.places.*Rows)[Face];
 }
 
-constexpr std::size_t kBinsSpace = 257;     // of a spectrum or a histogram, edges included
-constexpr std::size_t kLifterSpace = 1024;  // lifters whose own impacts are kept
+constexpr std::size_t kBinsSpace = 257;  // of a spectrum or a histogram, edges included
+constexpr std::size_t kFewestLifterSpace = 1024;
 
 std::vector<ResultArray> make_result_arrays() {
   using R = RunResult;
@@ -29,24 +31,24 @@ std::vector<ResultArray> make_result_arrays() {
   using P = ImpactPlaces;
   const std::string spectrum = "observables/impact_spectrum/", falls = "observables/fall_heights/",
                     places = "observables/impact_places/";
+  constexpr auto kBins = ResultArray::Of::kBins, kLifters = ResultArray::Of::kLifters;
   std::vector<ResultArray> arrays{
-      {spectrum + "edges", "J", kBinsSpace, &reach_array<&R::spectrum, &I::edges_J>},
-      {spectrum + "ball_ball", "s-1", kBinsSpace, &reach_array<&R::spectrum, &I::ball_ball>},
-      {spectrum + "ball_ball_normal", "s-1", kBinsSpace, &reach_array<&R::spectrum, &I::ball_ball_normal>},
-      {spectrum + "ball_ball_tangential", "s-1", kBinsSpace, &reach_array<&R::spectrum, &I::ball_ball_tangential>},
-      {spectrum + "ball_wall", "s-1", kBinsSpace, &reach_array<&R::spectrum, &I::ball_wall>},
-      {spectrum + "ball_wall_normal", "s-1", kBinsSpace, &reach_array<&R::spectrum, &I::ball_wall_normal>},
-      {spectrum + "ball_wall_tangential", "s-1", kBinsSpace, &reach_array<&R::spectrum, &I::ball_wall_tangential>},
-      {falls + "edges", "m", kBinsSpace, &reach_array<&R::falls, &FallHeights::edges>},
-      {falls + "frequency", "s-1", kBinsSpace, &reach_array<&R::falls, &FallHeights::frequency>},
-      {places + "angle_edges", "deg", kBinsSpace, &reach_array<&R::places, &P::angle_edges_deg>},
-      {places + "lifter_frequency", "s-1", kLifterSpace, &reach_array<&R::places, &P::lifter_frequency>},
-      {places + "lifter_power", "W", kLifterSpace, &reach_array<&R::places, &P::lifter_power>},
+      {spectrum + "edges", "J", kBins, &reach_array<&R::spectrum, &I::edges_J>},
+      {spectrum + "ball_ball", "s-1", kBins, &reach_array<&R::spectrum, &I::ball_ball>},
+      {spectrum + "ball_ball_normal", "s-1", kBins, &reach_array<&R::spectrum, &I::ball_ball_normal>},
+      {spectrum + "ball_ball_tangential", "s-1", kBins, &reach_array<&R::spectrum, &I::ball_ball_tangential>},
+      {spectrum + "ball_wall", "s-1", kBins, &reach_array<&R::spectrum, &I::ball_wall>},
+      {spectrum + "ball_wall_normal", "s-1", kBins, &reach_array<&R::spectrum, &I::ball_wall_normal>},
+      {spectrum + "ball_wall_tangential", "s-1", kBins, &reach_array<&R::spectrum, &I::ball_wall_tangential>},
+      {falls + "edges", "m", kBins, &reach_array<&R::falls, &FallHeights::edges>},
+      {falls + "frequency", "s-1", kBins, &reach_array<&R::falls, &FallHeights::frequency>},
+      {places + "angle_edges", "deg", kBins, &reach_array<&R::places, &P::angle_edges_deg>},
+      {places + "lifter_frequency", "s-1", kLifters, &reach_array<&R::places, &P::lifter_frequency>},
+      {places + "lifter_power", "W", kLifters, &reach_array<&R::places, &P::lifter_power>},
   };
   const auto add_faces = [&]<std::size_t... Face>(std::index_sequence<Face...>) {
-    (arrays.push_back({places + kFaceNames[Face] + "_frequency", "s-1", kBinsSpace, &reach_face<&P::frequency, Face>}),
-     ...);
-    (arrays.push_back({places + kFaceNames[Face] + "_power", "W", kBinsSpace, &reach_face<&P::power, Face>}), ...);
+    (arrays.push_back({places + kFaceNames[Face] + "_frequency", "s-1", kBins, &reach_face<&P::frequency, Face>}), ...);
+    (arrays.push_back({places + kFaceNames[Face] + "_power", "W", kBins, &reach_face<&P::power, Face>}), ...);
   };
   add_faces(std::make_index_sequence<kFaceNames.size()>());
   return arrays;
@@ -57,6 +59,11 @@ std::vector<ResultArray> make_result_arrays() {
 std::span<const ResultArray> all_result_arrays() {
   static const std::vector<ResultArray> arrays = make_result_arrays();
   return arrays;
+}
+
+std::size_t space_for(const ResultArray& array, const Config& config) {
+  if (array.numbers == ResultArray::Of::kBins) return kBinsSpace;
+  return std::max(kFewestLifterSpace, static_cast<std::size_t>(std::max(0, config.mill.lifters.count)));
 }
 
 std::span<const Series> all_series() {
@@ -89,18 +96,20 @@ std::span<const BallArray> all_ball_arrays() {
 
 std::string dissipation_path(const std::string& cause) { return "observables/dissipation/" + cause; }
 
-// Word by word, each mixed in by SplitMix64's finalizer: fast, and no single flipped or missing word goes unseen.
-std::int64_t checksum(const Slot& slot, std::span<const double> words) {
-  std::uint64_t sum = 0x7475'6D62'6C65'0001ull;
-  const auto mix = [&](std::uint64_t word) {
-    std::uint64_t z = sum + 0x9E3779B97F4A7C15ull + word;
-    z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9ull;
-    z = (z ^ (z >> 27)) * 0x94D049BB133111EBull;
-    sum = z ^ (z >> 31);
-  };
+Checksum::Checksum(const Slot& slot) {
   for (const std::int64_t v : {slot.sequence, slot.frames_written, slot.count}) mix(static_cast<std::uint64_t>(v));
+}
+
+void Checksum::add(std::span<const double> words) {
   for (const double w : words) mix(std::bit_cast<std::uint64_t>(w));
-  return std::bit_cast<std::int64_t>(sum);
+}
+
+// Word by word, each mixed in by SplitMix64's finalizer: fast, and no single flipped or missing word goes unseen.
+void Checksum::mix(std::uint64_t word) {
+  std::uint64_t z = sum_ + 0x9E3779B97F4A7C15ull + word;
+  z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9ull;
+  z = (z ^ (z >> 27)) * 0x94D049BB133111EBull;
+  sum_ = z ^ (z >> 31);
 }
 
 std::filesystem::path part_of(const std::filesystem::path& path) {

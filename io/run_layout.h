@@ -48,10 +48,11 @@ std::span<const BallArray> all_ball_arrays();
 struct ResultArray {
   std::string path;
   const char* unit;
-  std::size_t space;  // set aside [numbers]
+  enum class Of { kBins, kLifters } numbers;
   std::vector<double>& (*of)(RunResult&);
 };
 std::span<const ResultArray> all_result_arrays();
+std::size_t space_for(const ResultArray& array, const Config& config);  // set aside [numbers]
 inline const std::vector<double>& values(const ResultArray& array, const RunResult& result) {
   return array.of(const_cast<RunResult&>(result));
 }
@@ -66,7 +67,16 @@ struct Slot {
   std::int64_t count = 0;     // of words
   std::int64_t checksum = 0;  // of the three above and the words
 };
-std::int64_t checksum(const Slot& slot, std::span<const double> words);
+class Checksum {
+ public:
+  explicit Checksum(const Slot& slot);
+  void add(std::span<const double> words);
+  std::int64_t value() const { return std::bit_cast<std::int64_t>(sum_); }
+
+ private:
+  void mix(std::uint64_t word);
+  std::uint64_t sum_ = 0x7475'6D62'6C65'0001ull;
+};
 
 // RUN.h5.part
 std::filesystem::path part_of(const std::filesystem::path& path);

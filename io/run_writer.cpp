@@ -1,6 +1,7 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
@@ -77,9 +78,9 @@ void lay_out_element(hid_t file, const std::string& path, hid_t type, const hdf5
 
 // The arrays of the result get their true length at the end, within the one chunk that is set aside for each: then
 // only a number in the dataset's own header changes, in one write, and a file that is cut off there stays whole.
-void lay_out_result_array(hid_t file, const ResultArray& array) {
+void lay_out_result_array(hid_t file, const ResultArray& array, std::size_t space_set_aside) {
   hdf5::make_group(file, array.path.substr(0, array.path.rfind('/')));
-  const hsize_t chunk = array.space, unlimited = H5S_UNLIMITED;
+  const hsize_t chunk = space_set_aside, unlimited = H5S_UNLIMITED;
   const hdf5::Properties creation(hdf5::checked(H5Pcreate(H5P_DATASET_CREATE), "make a property list"));
   hdf5::checked(H5Pset_obj_track_times(creation, false), "leave out times");
   hdf5::checked(H5Pset_chunk(creation, 1, &chunk), "set a chunk");
@@ -120,7 +121,8 @@ void lay_out(hid_t file, const RunSetup& setup, std::size_t checkpoint_words) {
     lay_out_element(file, s.path, H5T_NATIVE_DOUBLE, {frames}, s.unit, hdf5::Fill::kNan);
   for (const auto& cause : setup.dissipation_causes)
     lay_out_element(file, dissipation_path(cause), H5T_NATIVE_DOUBLE, {frames}, "J", hdf5::Fill::kNan);
-  for (const ResultArray& array : all_result_arrays()) lay_out_result_array(file, array);
+  for (const ResultArray& array : all_result_arrays())
+    lay_out_result_array(file, array, space_for(array, setup.config));
 
   hdf5::make_string(file, "parameters/config", to_toml(setup.config));
   hdf5::make_string(file, "parameters/version", kVersion);
@@ -145,10 +147,12 @@ void write_result_arrays(const fs::path& part, const RunResult& result) {
   const auto file = hdf5::open_file(part, hdf5::Access::kChange);
   for (const ResultArray& array : all_result_arrays()) {
     const std::vector<double>& numbers = values(array, result);
-    if (numbers.size() > array.space)
-      throw WorkError(part.string(), array.path + " has at most " + std::to_string(array.space) + " numbers");
     const auto set = hdf5::open_array(file, array.path);
+    const hdf5::Properties creation(hdf5::checked(H5Dget_create_plist(set), "read the room of " + array.path));
+    hsize_t space = 0;
+    hdf5::checked(H5Pget_chunk(creation, 1, &space), "read the room of " + array.path);
     const hsize_t size = numbers.size();
+    if (size > space) throw WorkError(part.string(), array.path + " has at most " + std::to_string(space) + " numbers");
     hdf5::checked(H5Dset_extent(set, &size), "size " + array.path);
     if (!numbers.empty())
       hdf5::checked(H5Dwrite(set, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, numbers.data()),
@@ -157,25 +161,33 @@ void write_result_arrays(const fs::path& part, const RunResult& result) {
   hdf5::checked(H5Fflush(file, H5F_SCOPE_LOCAL), "write the file");
 }
 
-// The newest slot whose words are whole.
-struct StoredCheckpoint {
+// The newest slot whose words are whole, and where these lie.
+struct WholeSlot {
   Slot slot;
   int index = 0;
-  std::vector<double> words;
+  std::uint64_t words = 0;
 };
-std::optional<StoredCheckpoint> newest_checkpoint(hid_t file) {
+std::optional<WholeSlot> newest_checkpoint(hid_t file, const InPlaceFile& bytes) {
+  constexpr std::size_t kPiece = 8192;
   const auto numbers = hdf5::read_array<std::int64_t>(file, kCheckpointSlots, 8);
-  const auto words = hdf5::read_array<double>(file, kCheckpointWords);
+  const auto words = hdf5::open_array(file, kCheckpointWords);
+  const std::size_t capacity = hdf5::count_of(words, kCheckpointWords) / 2;
   if (numbers.size() != 8) throw hdf5::Failure("the checkpoint has another shape");
-  const std::size_t capacity = words.size() / 2;
-  std::optional<StoredCheckpoint> newest;
+  std::optional<WholeSlot> newest;
   for (std::size_t i = 0; i < 2; ++i) {
     const Slot slot{numbers[4 * i], numbers[4 * i + 1], numbers[4 * i + 2], numbers[4 * i + 3]};
     if (slot.sequence < 1 || slot.count < 0 || slot.count > static_cast<std::int64_t>(capacity)) continue;
-    const auto begin = words.begin() + static_cast<std::ptrdiff_t>(i * capacity);
-    std::vector<double> own(begin, begin + slot.count);
-    if (checksum(slot, own) != slot.checksum) continue;
-    if (!newest || slot.sequence > newest->slot.sequence) newest = {slot, static_cast<int>(i), std::move(own)};
+    if (newest && slot.sequence < newest->slot.sequence) continue;
+    const std::uint64_t place = hdf5::place_of(words, kCheckpointWords) + i * capacity * sizeof(double);
+    const auto count = static_cast<std::size_t>(slot.count);
+    Checksum sum(slot);
+    std::vector<double> piece;
+    for (std::size_t at = 0; at < count; at += piece.size()) {
+      piece.resize(std::min(kPiece, count - at));
+      bytes.read(place + at * sizeof(double), piece.data(), piece.size() * sizeof(double));
+      sum.add(piece);
+    }
+    if (sum.value() == slot.checksum) newest = {slot, static_cast<int>(i), place};
   }
   return newest;
 }
@@ -249,14 +261,15 @@ void check_space(const fs::path& path, const RunSetup& setup, std::size_t checkp
 
 struct RunWriter::Impl {
   fs::path path, part;
-  RunSetup setup;
+  std::int64_t frame_count = 0;
+  std::size_t balls = 0;
   InPlaceFile file;
   Places places;
   std::int64_t frames_written = 0;
   Slot last_slot;
   int last_slot_index = 1;
   bool owns_part = false;
-  std::vector<float> row;
+  std::vector<float> piece;  // of a frame's row
 
   ~Impl() {
     // A run that died before its first frame leaves nothing worth keeping.
@@ -264,8 +277,8 @@ struct RunWriter::Impl {
   }
 
   void write_frame(const Frame& frame) {
-    if (frames_written >= setup.frame_count)
-      throw WorkError(part.string(), "has its " + std::to_string(setup.frame_count) + " frames, cannot take another");
+    if (frames_written >= frame_count)
+      throw WorkError(part.string(), "has its " + std::to_string(frame_count) + " frames, cannot take another");
     const auto k = static_cast<std::uint64_t>(frames_written);
     const auto put = [&](std::uint64_t place, const auto& v) { file.write(place + k * sizeof v, &v, sizeof v); };
     for (std::size_t i = 0; i < places.balls.size(); ++i) write_balls(all_ball_arrays()[i], places.balls[i], k, frame);
@@ -278,13 +291,19 @@ struct RunWriter::Impl {
   }
 
   void write_balls(const BallArray& array, std::uint64_t place, std::uint64_t k, const Frame& frame) {
-    const std::size_t n = setup.balls.size(), parts = array.components();
-    row.resize(n * parts);
-    const auto& first = frame.*array.first;
-    for (std::size_t i = 0; i < n; ++i) row[i * parts] = static_cast<float>(first.at(i));
-    if (array.second)
-      for (std::size_t i = 0; i < n; ++i) row[2 * i + 1] = static_cast<float>((frame.*array.second).at(i));
-    file.write(place + k * row.size() * sizeof(float), row.data(), row.size() * sizeof(float));
+    constexpr std::size_t kPiece = 8192;
+    const std::size_t parts = array.components();
+    place += k * balls * parts * sizeof(float);
+    for (std::size_t from = 0; from < balls; from += kPiece) {
+      const std::size_t n = std::min(kPiece, balls - from);
+      piece.resize(n * parts);
+      const auto& first = frame.*array.first;
+      for (std::size_t i = 0; i < n; ++i) piece[i * parts] = static_cast<float>(first.at(from + i));
+      if (array.second)
+        for (std::size_t i = 0; i < n; ++i) piece[2 * i + 1] = static_cast<float>((frame.*array.second).at(from + i));
+      file.write(place, piece.data(), piece.size() * sizeof(float));
+      place += piece.size() * sizeof(float);
+    }
   }
 
   void set_frames_written(std::int64_t count) {
@@ -293,14 +312,24 @@ struct RunWriter::Impl {
   }
 
   void write_checkpoint(const Checkpoint& checkpoint) {
-    if (checkpoint.words.size() > places.capacity)
-      throw WorkError(part.string(), "a checkpoint of " + std::to_string(checkpoint.words.size()) +
-                                         " words exceeds the " + std::to_string(places.capacity) + " set aside");
-    Slot slot{last_slot.sequence + 1, checkpoint.frames_written, static_cast<std::int64_t>(checkpoint.words.size()), 0};
-    slot.checksum = checksum(slot, checkpoint.words);
+    const auto check_size = [&](std::size_t size) {
+      if (size > places.capacity)
+        throw WorkError(part.string(), "a checkpoint of " + std::to_string(size) + " words exceeds the " +
+                                           std::to_string(places.capacity) + " set aside");
+    };
+    check_size(checkpoint.size);
+    Slot slot{last_slot.sequence + 1, checkpoint.frames_written, static_cast<std::int64_t>(checkpoint.size), 0};
+    Checksum sum(slot);
     const int index = 1 - last_slot_index;
-    file.write(places.words + index * places.capacity * sizeof(double), checkpoint.words.data(),
-               checkpoint.words.size() * sizeof(double));
+    const std::uint64_t place = places.words + index * places.capacity * sizeof(double);
+    std::size_t told = 0;
+    checkpoint.tell([&](std::span<const double> words) {
+      check_size(told + words.size());
+      sum.add(words);
+      file.write(place + told * sizeof(double), words.data(), words.size_bytes());
+      told += words.size();
+    });
+    slot.checksum = sum.value();
     file.write(places.slots + index * sizeof slot, &slot, sizeof slot);
     last_slot = slot;
     last_slot_index = index;
@@ -321,9 +350,9 @@ struct RunWriter::Impl {
   }
 
   void finish(const RunResult& result) {
-    if (frames_written != setup.frame_count)
+    if (frames_written != frame_count)
       throw WorkError(part.string(), "ends after " + std::to_string(frames_written) + " of " +
-                                         std::to_string(setup.frame_count) + " frames");
+                                         std::to_string(frame_count) + " frames");
     const std::int64_t steady = result.steady, complete = 1;
     std::string caveat = result.caveat;
     caveat.resize(kCaveatCapacity, '\0');
@@ -341,7 +370,7 @@ struct RunWriter::Impl {
     file.sync();
     put_in_place(part, path);
     owns_part = false;
-    write_xdmf(path, setup);
+    write_xdmf(path, frame_count, balls);
   }
 };
 
@@ -349,7 +378,8 @@ RunWriter::RunWriter(const fs::path& path, const RunSetup& setup, std::size_t ch
     : impl_(std::make_unique<Impl>()) {
   impl_->path = path;
   impl_->part = part_of(path);
-  impl_->setup = setup;
+  impl_->frame_count = setup.frame_count;
+  impl_->balls = setup.balls.size();
   check_space(path, setup, checkpoint_words);
   // Laid out under a third name: a .part is whole from the moment it is there.
   fs::path layout = impl_->part;
@@ -385,12 +415,13 @@ RunWriter RunWriter::resume(const fs::path& path, const RunSetup& setup) {
   auto impl = std::make_unique<Impl>();
   impl->path = path;
   impl->part = part_of(path);
-  impl->setup = setup;
+  impl->frame_count = setup.frame_count;
+  impl->balls = setup.balls.size();
   try {
     const auto held = hdf5::lock();
     const auto file = hdf5::open_file(impl->part, hdf5::Access::kRead);
     refuse_another_run(file, impl->part, setup.config);
-    const auto checkpoint = newest_checkpoint(file);
+    const auto checkpoint = newest_checkpoint(file, InPlaceFile(impl->part, impl->part));
     if (!checkpoint) throw hdf5::Failure("it has no checkpoint");
     const auto frames = hdf5::shape_of(hdf5::open_array(file, kTime), kTime);
     const auto radius = hdf5::read_array<double>(file, "particles/balls/radius");
@@ -407,6 +438,7 @@ RunWriter RunWriter::resume(const fs::path& path, const RunSetup& setup) {
   }
   impl->file = InPlaceFile(impl->part, impl->part);
   impl->file.claim();
+  impl->file.reserve();
   impl->drop_frames_from(impl->last_slot.frames_written);
   return RunWriter(std::move(impl));
 }
@@ -424,7 +456,7 @@ void RunWriter::finish(const RunResult& result) {
   }
 }
 
-std::optional<Checkpoint> read_checkpoint(const fs::path& path, const Config& config) {
+std::optional<StoredCheckpoint> read_checkpoint(const fs::path& path, const Config& config) {
   const fs::path part = part_of(path);
   std::error_code error;
   if (!fs::exists(part, error)) return std::nullopt;
@@ -432,9 +464,14 @@ std::optional<Checkpoint> read_checkpoint(const fs::path& path, const Config& co
     const auto held = hdf5::lock();
     const auto file = hdf5::open_file(part, hdf5::Access::kRead);
     refuse_another_run(file, part, config);
-    auto stored = newest_checkpoint(file);
-    if (!stored) return std::nullopt;
-    return Checkpoint{stored->slot.frames_written, std::move(stored->words)};
+    const auto bytes = std::make_shared<InPlaceFile>(part, part);
+    const auto newest = newest_checkpoint(file, *bytes);
+    if (!newest) return std::nullopt;
+    return StoredCheckpoint{newest->slot.frames_written, static_cast<std::size_t>(newest->slot.count),
+                            [bytes, place = newest->words](std::span<double> words) mutable {
+                              bytes->read(place, words.data(), words.size_bytes());
+                              place += words.size_bytes();
+                            }};
   } catch (const hdf5::Failure& e) {
     throw not_resumable(part, e.what());
   }
@@ -462,7 +499,7 @@ bool adopt_complete_run(const fs::path& path, const Config& config) {
     file.sync();
   }
   put_in_place(part, path);
-  write_xdmf(path, setup);
+  write_xdmf(path, setup.frame_count, setup.balls.size());
   return true;
 }
 

@@ -1,6 +1,7 @@
 #include "sim/ball_order.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace tumble::sim {
 namespace {

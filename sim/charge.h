@@ -38,6 +38,8 @@ inline Charge make_charge(const Balls& balls) {
   c.radius = balls.radius;
   c.mass = balls.mass;
   for (auto* v : moving_columns(c)) v->assign(balls.size(), 0.0);
+  c.half_step_per_mass.reserve(balls.size());
+  c.half_step_per_inertia.reserve(balls.size());
   c.id.resize(balls.size());
   std::iota(c.id.begin(), c.id.end(), 0);
   return c;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/error.h"
 #include "core/random.h"
@@ -204,7 +205,7 @@ Charge settle(const MillModel& model, Charge charge, const Progress& progress) {
   sort_by_number(mill);
   for (auto* v : {&mill.charge.vx, &mill.charge.vy, &mill.charge.spin, &mill.charge.angle})
     std::fill(v->begin(), v->end(), 0.0);
-  return mill.charge;
+  return std::move(mill.charge);
 }
 
 }  // namespace tumble::sim

@@ -18,41 +18,96 @@ constexpr std::size_t kWordsPerContact = 12;
 constexpr std::size_t kArraysOfBalls = 14;  // charge, flights and locked balls, see `visit`
 constexpr std::size_t kOtherWords = 64 + 64 * kWordsPerContact + 6 * kBins + 2 * kPlaces + kFallBins;
 
-struct Writer {
-  std::vector<double> words;
-  void operator()(double& value) { words.push_back(value); }
-  void operator()(const std::int64_t& value) { words.push_back(std::bit_cast<double>(value)); }
-  void operator()(std::vector<double>& values) {
-    auto n = static_cast<std::int64_t>(values.size());
-    (*this)(n);
-    words.insert(words.end(), values.begin(), values.end());
-  }
+constexpr std::size_t kWordsPerPiece = 8192;
+
+// Archives go through a state word by word: one counts, one tells, one reads. A column has a word for each ball, in the
+// order of the balls' numbers.
+struct Counter {
+  static constexpr bool kReads = false;
+  std::size_t words = 0;
+  void operator()(double) { ++words; }
+  void operator()(std::int64_t) { ++words; }
+  void operator()(const std::vector<double>& values) { words += 1 + values.size(); }
+  void column(const std::vector<double>& values) { (*this)(values); }
 };
 
-struct Reader {
-  const std::vector<double>& words;
-  std::size_t at = 0;
-  double next() {
-    if (at >= words.size()) throw InputError("checkpoint", "is too short for this run; start afresh");
-    return words[at++];
+class Teller {
+ public:
+  static constexpr bool kReads = false;
+  Teller(const TakeWords& take, const std::vector<int>& id) : take_(take) {
+    piece_.reserve(kWordsPerPiece);
+    if (std::is_sorted(id.begin(), id.end())) return;
+    place_.resize(id.size());
+    for (std::size_t p = 0; p < id.size(); ++p) place_[static_cast<std::size_t>(id[p])] = static_cast<int>(p);
   }
-  void operator()(double& value) { value = next(); }
-  void operator()(std::int64_t& value) { value = std::bit_cast<std::int64_t>(next()); }
+  void operator()(double value) {
+    piece_.push_back(value);
+    if (piece_.size() == kWordsPerPiece) flush();
+  }
+  void operator()(std::int64_t value) { (*this)(std::bit_cast<double>(value)); }
+  void operator()(const std::vector<double>& values) {
+    (*this)(static_cast<std::int64_t>(values.size()));
+    for (const double v : values) (*this)(v);
+  }
+  void column(const std::vector<double>& values) {
+    if (place_.empty()) return (*this)(values);
+    (*this)(static_cast<std::int64_t>(values.size()));
+    for (const int p : place_) (*this)(values[static_cast<std::size_t>(p)]);
+  }
+  void flush() {
+    take_(piece_);
+    piece_.clear();
+  }
+
+ private:
+  const TakeWords& take_;
+  std::vector<double> piece_;
+  std::vector<int> place_;  // by number; empty where the balls lie in that order
+};
+
+class Reader {
+ public:
+  static constexpr bool kReads = true;
+  explicit Reader(const StoredCheckpoint& from) : from_(from), left_(from.size) {}
+  void operator()(double& value) {
+    if (at_ == piece_.size()) fetch();
+    value = piece_[at_++];
+  }
+  void operator()(std::int64_t& value) {
+    double word = 0;
+    (*this)(word);
+    value = std::bit_cast<std::int64_t>(word);
+  }
   void operator()(std::vector<double>& values) {
     std::int64_t n = 0;
     (*this)(n);
-    if (n < 0 || static_cast<std::size_t>(n) > words.size() - at)
+    if (n < 0 || static_cast<std::size_t>(n) > left_ + (piece_.size() - at_))
       throw InputError("checkpoint", "is damaged; start afresh");
-    values.assign(words.begin() + static_cast<std::ptrdiff_t>(at), words.begin() + static_cast<std::ptrdiff_t>(at) + n);
-    at += static_cast<std::size_t>(n);
+    values.resize(static_cast<std::size_t>(n));
+    for (double& v : values) (*this)(v);
   }
+  void column(std::vector<double>& values) { (*this)(values); }
+
+ private:
+  void fetch() {
+    if (left_ == 0) throw InputError("checkpoint", "is too short for this run; start afresh");
+    piece_.resize(std::min(left_, kWordsPerPiece));
+    from_.next(piece_);
+    left_ -= piece_.size();
+    at_ = 0;
+  }
+
+  const StoredCheckpoint& from_;
+  std::size_t left_;  // words not yet fetched
+  std::vector<double> piece_;
+  std::size_t at_ = 0;
 };
 
 template <class Archive, class Integer>
 void visit_as_int64(Archive& archive, Integer& value) {
   auto wide = static_cast<std::int64_t>(value);
   archive(wide);
-  value = static_cast<Integer>(wide);
+  if constexpr (Archive::kReads) value = static_cast<Integer>(wide);
 }
 
 template <class Archive>
@@ -68,8 +123,8 @@ void visit(Archive& archive, Sums& sums) {
 template <class Archive>
 void visit(Archive& archive, RunState& run) {
   Charge& c = run.mill.charge;
-  for (auto* v : moving_columns(c)) archive(*v);
-  archive(run.mill.flights.apex);
+  for (auto* v : moving_columns(c)) archive.column(*v);
+  archive.column(run.mill.flights.apex);
   archive(run.mill.step);
   archive(run.mill.fastest);
 
@@ -104,13 +159,27 @@ std::array<double*, 5> words_in(ContactState& s) {
 }
 std::array<double*, 4> words_in(TermState& t) { return {&t.force, &t.stored, &t.damping, &t.roll}; }
 
-void write_contacts(Writer& writer, const RunningMill& mill, Kind kind) {
-  const std::vector<Contact> contacts = contacts_of(mill, kind);
-  writer(static_cast<std::int64_t>(contacts.size()));
-  for (Contact c : contacts) {
-    for (const std::int64_t v : {c.i, c.j, int{c.place}}) writer(v);
-    for (double* v : words_in(c.state)) writer(*v);
-    for (double* v : words_in(c.terms)) writer(*v);
+std::size_t count_contacts(const RunningMill& mill, Kind kind) {
+  std::size_t count = 0;
+  for (const Patch& patch : mill.patches)
+    count += static_cast<std::size_t>(patch.touching[static_cast<std::size_t>(kind)].size());
+  return count;
+}
+
+void tell_contacts(Teller& teller, const RunningMill& mill, Kind kind) {
+  const std::vector<int>& id = mill.charge.id;
+  teller(static_cast<std::int64_t>(count_contacts(mill, kind)));
+  for (const Patch& patch : mill.patches) {
+    const ContactTable& table = patch.touching[static_cast<std::size_t>(kind)];
+    for (int k = 0; k < table.size(); ++k) {
+      Contact c = contact_at(table, k);
+      c.i = id[static_cast<std::size_t>(c.i)];
+      if (kind == Kind::kBalls) c.j = id[static_cast<std::size_t>(c.j)];
+      if (kind == Kind::kBalls && c.i > c.j) std::swap(c.i, c.j);
+      for (const int v : {c.i, c.j, int{c.place}}) teller(std::int64_t{v});
+      for (const double* v : words_in(c.state)) teller(*v);
+      for (const double* v : words_in(c.terms)) teller(*v);
+    }
   }
 }
 
@@ -148,19 +217,24 @@ constexpr Kind kAllKinds[] = {Kind::kBalls, Kind::kPlate, Kind::kLifters};
 
 }  // namespace
 
-std::vector<double> words_of(const RunState& run) {
-  Writer writer;
-  RunState copy = run;  // `visit` is written for both directions and wants to change what it sees
-  sort_by_number(copy.mill);
-  visit(writer, copy);
-  for (const Kind kind : kAllKinds) write_contacts(writer, run.mill, kind);
-  return std::move(writer.words);
+Checkpoint checkpoint_of(const RunState& run) {
+  // `visit` is written for both directions; these archives change nothing.
+  auto& state = const_cast<RunState&>(run);
+  Counter counter;
+  visit(counter, state);
+  for (const Kind kind : kAllKinds) counter.words += 1 + kWordsPerContact * count_contacts(run.mill, kind);
+  return {run.frames_written, counter.words, [&state](const TakeWords& take) {
+            Teller teller(take, state.mill.charge.id);
+            visit(teller, state);
+            for (const Kind kind : kAllKinds) tell_contacts(teller, state.mill, kind);
+            teller.flush();
+          }};
 }
 
-void restore(RunState& run, const std::vector<double>& words) {
+void restore(RunState& run, const StoredCheckpoint& stored) {
   const std::size_t balls = run.mill.charge.size();
   sort_by_number(run.mill);
-  Reader reader{words};
+  Reader reader(stored);
   visit(reader, run);
   bool fits = run.mill.flights.apex.size() == balls;
   for (const std::vector<double>* v : moving_columns(run.mill.charge)) fits = fits && v->size() == balls;

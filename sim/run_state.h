@@ -1,6 +1,7 @@
 #pragma once
 #include <cstdint>
 
+#include "core/checkpoint.h"
 #include "sim/history.h"
 #include "sim/running_mill.h"
 
@@ -25,10 +26,10 @@ struct RunState {
   bool spin_up_gave_up = false;  // "auto" reached its longest
 };
 
-// The state as words, and back into a state that was made from the same config. The near lists are not kept: renewing
-// them changes no bit.
-std::vector<double> words_of(const RunState& run);
-void restore(RunState& run, const std::vector<double>& words);
+// The state as words, which stay where they are until they are told, and back into a state that was made from the same
+// config. The near lists are not kept: renewing them changes no bit.
+Checkpoint checkpoint_of(const RunState& run);
+void restore(RunState& run, const StoredCheckpoint& stored);
 
 // Upper bound of the number of words for so many balls, history samples and lifters.
 std::size_t most_words(std::size_t balls, std::size_t samples, std::size_t lifters);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <utility>
 
 #include "core/units.h"
 #include "sim/packing.h"
@@ -148,7 +149,7 @@ class Checkpoints {
   explicit Checkpoints(const RunSink& sink) : sink_(sink), last_(Clock::now()) {}
   void maybe(const RunState& run) {
     if (!sink_.checkpoint || Clock::now() - last_ < std::chrono::duration<double>(kSecondsBetweenCheckpoints)) return;
-    sink_.checkpoint({run.frames_written, words_of(run)});
+    sink_.checkpoint(checkpoint_of(run));
     last_ = Clock::now();
   }
 
@@ -248,10 +249,10 @@ RunResult result_of(const Config& config, const RunState& run) {
 
 }  // namespace
 
-RunResult simulate(const Config& config, const RunSink& sink, const Checkpoint* resume) {
+RunResult simulate(const Config& config, const RunSink& sink, std::optional<StoredCheckpoint> resume) {
   check_complete(config);
   const MillModel model = make_mill_model(config);
-  const Balls balls = draw_balls(config);
+  Balls balls = draw_balls(config);
 
   // Settling may take minutes with many small balls: it has its share of the progress, by simulated time.
   const double spin_up_expected = config.run.spin_up_auto ? 3 * kAutoShortest : config.run.spin_up;
@@ -264,12 +265,13 @@ RunResult simulate(const Config& config, const RunSink& sink, const Checkpoint* 
   RunState run;
   if (resume) {
     run.mill = start_mill(model, make_charge(balls), threads);
-    restore(run, resume->words);
+    restore(run, *resume);
+    resume.reset();  // it may hold memory
   } else {
     run.mill = start_mill(model, settle(model, place_loosely(config, model, balls), settled), threads);
   }
   const std::int64_t frames = frame_count(config, model);
-  if (sink.setup) sink.setup({config, balls, model.time_step, model.speed, frames, cause_names(model)});
+  if (sink.setup) sink.setup({config, std::move(balls), model.time_step, model.speed, frames, cause_names(model)});
 
   Checkpoints checkpoints(sink);
   if (run.averaging_from < 0) spin_up(config, run, checkpoints, turned);

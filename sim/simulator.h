@@ -1,6 +1,8 @@
 #pragma once
 #include <functional>
+#include <optional>
 
+#include "core/checkpoint.h"
 #include "core/frame.h"
 #include "core/progress.h"
 
@@ -18,9 +20,9 @@ struct RunSink {
 // Runs the mill. Throws InputError for a config that is incomplete or has an unstable time step, WorkError when the
 // run leaves physics (NaN, overlap beyond half a radius), with step, time and ball.
 // `resume`: a checkpoint of the same config; the frames that follow have the same bits as an undisturbed run's.
-RunResult simulate(const Config& config, const RunSink& sink, const Checkpoint* resume = nullptr);
+RunResult simulate(const Config& config, const RunSink& sink, std::optional<StoredCheckpoint> resume = {});
 
-// Upper bound of Checkpoint::words' size for this config, for writers that set space aside.
+// Upper bound of Checkpoint::size for this config, for writers that set space aside.
 std::size_t checkpoint_capacity(const Config& config);
 
 }  // namespace tumble::sim

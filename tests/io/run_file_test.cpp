@@ -18,6 +18,7 @@
 #include "io/hdf5.h"
 #include "io/run_layout.h"
 #include "tests/io/folder.h"
+#include "tests/support/checkpoints.h"
 
 namespace tumble::io {
 namespace {
@@ -88,9 +89,10 @@ RunResult make_result() {
 const RunResult kResult = make_result();
 constexpr std::size_t kWords = 40;
 
-Checkpoint checkpoint_at(std::int64_t frames) {
+KeptCheckpoint words_at(std::int64_t frames) {
   return {frames, std::vector<double>(kWords - 7, 1.0 / static_cast<double>(frames + 1))};
 }
+Checkpoint checkpoint_at(std::int64_t frames) { return told(words_at(frames)); }
 
 void write_run(const fs::path& path, const RunSetup& setup) {
   RunWriter writer(path, setup, kWords);
@@ -183,6 +185,20 @@ TEST_F(RunFile, SameRunSameBytes) {
   EXPECT_TRUE(once == bytes_of(folder_ / "again.h5"));
 }
 
+// More than the program's usual room, each with impacts of its own.
+TEST_F(RunFile, HoldsAnyNumberOfLifters) {
+  RunSetup setup = small_run();
+  setup.config.mill.diameter = 100;
+  setup.config.mill.lifters.count = 3000;
+  RunResult result = kResult;
+  for (int k = 0; k < 3000; ++k) result.places.lifter_power.push_back(k);
+  result.places.lifter_power.resize(3000);
+  RunWriter writer(run_, setup, kWords);
+  for (int k = 0; k < 12; ++k) writer.write(frame_number(k));
+  writer.finish(result);
+  EXPECT_EQ(RunReader(run_).result().places.lifter_power, result.places.lifter_power);
+}
+
 TEST_F(RunFile, InterruptedRunIsReadableUpToItsLastFrame) {
   {
     RunWriter writer(run_, small_run(), kWords);
@@ -211,7 +227,7 @@ TEST_F(RunFile, ResumedRunHasTheBytesOfAnUndisturbedOne) {
   const auto checkpoint = read_checkpoint(run_, setup.config);
   ASSERT_TRUE(checkpoint);
   EXPECT_EQ(checkpoint->frames_written, 6);
-  EXPECT_EQ(checkpoint->words, checkpoint_at(6).words);
+  EXPECT_EQ(keep(*checkpoint).words, words_at(6).words);
   RunWriter writer = RunWriter::resume(run_, setup);
   EXPECT_EQ(RunReader(part_).frame_count(), 6u);  // what came after the checkpoint is gone
   for (int k = 6; k < 12; ++k) writer.write(frame_number(k));
@@ -396,17 +412,25 @@ TEST_F(RunFile, FullDiskNamesTheReasonAndKeepsTheFrames) {
             }),
             0);
   EXPECT_TRUE(fs::is_empty(folder_));
-  // In the middle, where the disk gave no promise: what was written stays readable.
+  // In the middle, where the disk did not keep its promise: what was written stays readable.
+  constexpr std::size_t kMany = 2000;  // frames of fewer go through memory
+  RunSetup large = setup;
+  large.balls = {std::vector<double>(kMany, 0.012), std::vector<double>(kMany, 0.06)};
+  const auto large_frame = [](std::int64_t k) {
+    Frame frame = frame_number(k);
+    for (auto* v : {&frame.x, &frame.y, &frame.vx, &frame.vy, &frame.angle, &frame.spin}) v->resize(kMany, 0.5);
+    return frame;
+  };
   EXPECT_EQ(in_child([&] {
-              RunWriter writer(run_, setup, kWords);
-              for (int k = 0; k < 5; ++k) writer.write(frame_number(k));
+              RunWriter writer(run_, large, kWords);
+              for (int k = 0; k < 5; ++k) writer.write(large_frame(k));
               limit_size(4096);
-              return complains([&] { writer.write(frame_number(5)); }) ? 0 : 1;
+              return complains([&] { writer.write(large_frame(5)); }) ? 0 : 1;
             }),
             0);
   const RunReader reader(part_);
   ASSERT_EQ(reader.frame_count(), 5u);
-  expect_frame(reader.frame(4), frame_number(4));
+  expect_frame(reader.frame(4), large_frame(4));
 }
 
 }  // namespace

@@ -5,11 +5,14 @@
 
 #include <algorithm>
 #include <chrono>
+#include <optional>
 #include <thread>
+#include <utility>
 
 #include "core/error.h"
 #include "core/parallel_for.h"
 #include "core/units.h"
+#include "tests/support/checkpoints.h"
 #include "tests/support/mills.h"
 
 namespace tumble::sim {
@@ -30,12 +33,12 @@ struct Seen {
   RunResult result;
 };
 
-Seen run(const Config& config, const Checkpoint* resume = nullptr) {
+Seen run(const Config& config, std::optional<StoredCheckpoint> resume = {}) {
   Seen seen;
   RunSink sink;
   sink.setup = [&](const RunSetup& s) { seen.setup = s; };
   sink.frame = [&](const Frame& f) { seen.frames.push_back(f); };
-  seen.result = simulate(config, sink, resume);
+  seen.result = simulate(config, sink, std::move(resume));
   return seen;
 }
 
@@ -125,7 +128,7 @@ TEST(Simulator, ResumedRunGoesOnWithTheSameBits) {
   config.run.revolutions = 0.1;
   const Seen whole = run(config);
   for (const int wait_at : {0, 15}) {
-    std::vector<Checkpoint> checkpoints;
+    std::vector<KeptCheckpoint> checkpoints;
     int frames = 0;
     bool waited = false, settled = false;
     RunSink sink;
@@ -142,15 +145,15 @@ TEST(Simulator, ResumedRunGoesOnWithTheSameBits) {
     sink.progress = [&](double) {
       if (settled) wait();
     };
-    sink.checkpoint = [&](const Checkpoint& c) { checkpoints.push_back(c); };
+    sink.checkpoint = [&](const Checkpoint& c) { checkpoints.push_back(keep(c)); };
     simulate(config, sink);
     // A slow machine may give more of them.
     const auto at = std::find_if(checkpoints.begin(), checkpoints.end(),
-                                 [&](const Checkpoint& c) { return c.frames_written == wait_at; });
+                                 [&](const KeptCheckpoint& c) { return c.frames_written == wait_at; });
     ASSERT_NE(at, checkpoints.end());
     EXPECT_LE(at->words.size(), checkpoint_capacity(config));
 
-    const Seen rest = run(config, &*at);
+    const Seen rest = run(config, stored(*at));
     ASSERT_EQ(rest.frames.size(), whole.frames.size() - std::size_t(wait_at));
     expect_same_bits(rest.frames.front(), whole.frames[std::size_t(wait_at)]);
     expect_same_bits(rest.frames.back(), whole.frames.back());
