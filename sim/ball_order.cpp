@@ -17,11 +17,19 @@ void reorder(Column& column, const std::vector<int>& order, Column& space) {
 // The ball at `order[p]` comes to p.
 void move_balls(RunningMill& mill, const std::vector<int>& order) {
   Charge& c = mill.charge;
-  std::vector<double> space;
+  std::vector<std::vector<double>*> columns{&mill.flights.apex};
+  for (auto* column : moving_columns(c))
+    if (mill.model.body.ends.on() || (column != &c.end_x && column != &c.end_y)) columns.push_back(column);
+  for (auto* column : constant_columns(c)) columns.push_back(column);
+  const auto reorder_some = [&](std::size_t begin, std::size_t end) {
+    std::vector<double> space;
+    for (std::size_t k = begin; k < end; ++k) reorder(*columns[k], order, space);
+  };
+  if (mill.shares.size() == 1)
+    reorder_some(0, columns.size());
+  else
+    parallel_for(columns.size(), 1, reorder_some);
   std::vector<int> int_space;
-  for (auto* column : moving_columns(c)) reorder(*column, order, space);
-  for (auto* column : constant_columns(c)) reorder(*column, order, space);
-  reorder(mill.flights.apex, order, space);
   reorder(mill.flights.contacts, order, int_space);
   reorder(c.id, order, int_space);
 

@@ -1,5 +1,6 @@
 #include "sim/cell_grid.h"
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 
@@ -11,16 +12,17 @@ int CellGrid::column(double x) const { return static_cast<int>((x - left_) * per
 int CellGrid::row(double y) const { return static_cast<int>((y - bottom_) * per_metre_); }
 
 void CellGrid::fill(const Charge& charge, double cell) {
-  const auto [x_low, x_high] = std::minmax_element(charge.x.begin(), charge.x.end());
-  const auto [y_low, y_high] = std::minmax_element(charge.y.begin(), charge.y.end());
-  left_ = *x_low;
-  bottom_ = *y_low;
+  const auto size = static_cast<Eigen::Index>(charge.size());
+  const Eigen::Map<const Eigen::ArrayXd> x(charge.x.data(), size), y(charge.y.data(), size);
+  const double x_high = x.maxCoeff(), y_high = y.maxCoeff();
+  left_ = x.minCoeff();
+  bottom_ = y.minCoeff();
   // A few balls in a large mill must not cost a large grid.
-  const double side = std::max(*x_high - left_, *y_high - bottom_);
+  const double side = std::max(x_high - left_, y_high - bottom_);
   const double cells_across = 2 * std::sqrt(static_cast<double>(charge.size())) + 1;
   per_metre_ = 1 / std::max(cell, side / cells_across);
-  columns_ = column(*x_high) + 1;
-  rows_ = row(*y_high) + 1;
+  columns_ = column(x_high) + 1;
+  rows_ = row(y_high) + 1;
 
   const std::size_t n = charge.size();
   start_.assign(static_cast<std::size_t>(columns_) * rows_ + 1, 0);

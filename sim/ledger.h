@@ -1,6 +1,9 @@
 #pragma once
+#include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -31,10 +34,24 @@ inline constexpr int kLowestDecade = -9;  // [J]
 inline constexpr int kHighestDecade = 3;
 inline constexpr int kBins = kBinsPerDecade * (kHighestDecade - kLowestDecade);
 
+// Lower ends of the bins [J].
+inline const std::array<double, kBins> kBinEdges = [] {
+  std::array<double, kBins> edges{};
+  for (int k = 0; k < kBins; ++k)
+    edges[static_cast<std::size_t>(k)] = std::pow(10.0, kLowestDecade + double(k) / kBinsPerDecade);
+  return edges;
+}();
+
+// What is less or more than all bins goes into the first and the last one. An impact asks three times: the power of two
+// tells nearly enough without a logarithm.
 inline int spectrum_bin(double lost) {
-  if (!(lost > 0)) return 0;
-  const double bin = std::floor((std::log10(lost) - kLowestDecade) * kBinsPerDecade);
-  return bin < 0 ? 0 : bin >= kBins ? kBins - 1 : static_cast<int>(bin);
+  if (!(lost >= kBinEdges[0])) return 0;
+  if (lost >= kBinEdges[kBins - 1]) return kBins - 1;
+  constexpr double kBinsPerOctave = 0.30102999566398120 * kBinsPerDecade;
+  const int octave = static_cast<int>(std::bit_cast<std::uint64_t>(lost) >> 52) - 1023;
+  int bin = std::max(0, static_cast<int>(octave * kBinsPerOctave - kLowestDecade * kBinsPerDecade - 0.5));
+  while (lost >= kBinEdges[static_cast<std::size_t>(bin + 1)]) ++bin;
+  return bin;
 }
 
 // Impacts of one kind: number by all the energy lost from first touch to parting, by the normal and by the tangential

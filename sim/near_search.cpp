@@ -3,13 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <numeric>
 
 #include "sim/ball_order.h"
 #include "sim/kernels/meeting.h"
+#include "sim/patches.h"
 
 namespace tumble::sim {
 namespace {
@@ -42,7 +42,7 @@ constexpr int kPairsAtATime = 512;
 // Pairs are found from the larger of the two balls, so that a few large ones do not make all the others look far; of
 // equal ones from that which comes first in the grid. `known`: contacts that there are already; null, where all that
 // touches is one.
-void near_balls(const RunningMill& mill, Patch& patch, Share& share, double smallest, const Known* known) {
+void near_balls(const RunningMill& mill, Patch& patch, Share& share, const Known* known) {
   const CellGrid& grid = mill.grid;
   const GridView view{grid.x(), grid.y(), grid.radius()};
   const Kernels& kernels = *mill.kernels;
@@ -64,7 +64,7 @@ void near_balls(const RunningMill& mill, Patch& patch, Share& share, double smal
   };
   for (int p = patch.first; p < patch.last; ++p) {
     const double radius = view.radius[p];
-    grid.for_ranges(p, 2 * radius + mill.skin, radius > smallest, [&](int from, int to, bool later) {
+    grid.for_ranges(p, 2 * radius + mill.skin, radius > mill.smallest_radius, [&](int from, int to, bool later) {
       const auto room = static_cast<std::size_t>(found + std::max(0, to - from) + 2 * kMostLanes);
       if (room > found_p.size()) {
         found_p.resize(2 * room);
@@ -104,72 +104,11 @@ void near_wall(const RunningMill& mill, Patch& patch, const Known* known_plate, 
   }
 }
 
-// The balls that the patch's contacts can reach until the next search.
-void find_reach(Patch& patch) {
-  int low = patch.first, high = patch.last;
-  const auto widen = [&](const std::vector<int>& balls, int count) {
-    for (int k = 0; k < count; ++k) {
-      low = std::min(low, balls[static_cast<std::size_t>(k)]);
-      high = std::max(high, balls[static_cast<std::size_t>(k)] + 1);
-    }
-  };
-  for (int kind = 0; kind < kKinds; ++kind) {
-    const auto k = static_cast<std::size_t>(kind);
-    const bool balls = kind == static_cast<int>(Kind::kBalls);
-    for (const NearPairs::Tier& t : patch.near[k].tiers) {
-      widen(t.i, t.count);
-      if (balls) widen(t.j, t.count);
-    }
-    widen(patch.touching[k].i, patch.touching[k].count);
-    if (balls) widen(patch.touching[k].j, patch.touching[k].count);
-  }
-  patch.low = low;
-  patch.high = high;
-}
-
-// Which patches wait for which, and each thread's window on the forces.
-void find_neighbours(RunningMill& mill) {
-  const auto patch_of = [&](int ball) {
-    const auto behind = std::upper_bound(mill.patches.begin(), mill.patches.end(), ball,
-                                         [](int b, const Patch& p) { return b < p.first; });
-    return static_cast<int>(behind - mill.patches.begin()) - 1;
-  };
-  for (Patch& p : mill.patches) {
-    p.apart = true;
-    p.low_patch = patch_of(p.low);
-    p.high_patch = patch_of(p.high - 1);
-  }
-  for (Share& share : mill.shares) {
-    const auto patch_at = [&](int p) -> Patch& { return mill.patches[static_cast<std::size_t>(p)]; };
-    for (int p = share.last - 1, next = share.last; p >= share.first; --p) {
-      patch_at(p).done_before = std::min(p + 1, next);
-      next = std::min(next, patch_at(p).low_patch);
-    }
-    share.low = patch_at(share.first).first;
-    share.high = patch_at(share.last - 1).last;
-    int reached = 0, waiting = share.first, rows = kMostLanes;
-    for (int p = share.first; p < share.last; ++p) {
-      const Patch& patch = patch_at(p);
-      share.low = std::min(share.low, patch.low);
-      share.high = std::max(share.high, patch.high);
-      for (int q = patch.low_patch; q <= patch.high_patch; ++q)
-        if (q < share.first || q >= share.last) patch_at(q).apart = false;
-      reached = std::max(reached, patch.high);
-      rows = std::max(rows, reached - patch_at(waiting).first);
-      waiting = std::max(waiting, patch.done_before);
-    }
-    // Where threads meet, rows wait until all have come to the end.
-    if (mill.shares.size() > 1) rows = share.high - share.low;
-    const auto room = std::bit_ceil(static_cast<unsigned>(rows));
-    share.mask = static_cast<int>(room) - 1;
-    share.forces.assign(std::size_t{kRow} * room, 0.0);
-  }
-}
-
 // Steps between two searches are won with a larger skin, and paid for with pairs to look at in each of them: with u the
 // way of the fastest ball in a step, the sum is least for a skin that goes with sqrt(u r). The factor is measured, see
 // docs/performance.md.
-double best_skin(const RunningMill& mill, double mean_radius) {
+double best_skin(const RunningMill& mill) {
+  const double mean_radius = mill.mean_radius;
   const double way = std::max(mill.fastest, shell_speed(mill.model)) * mill.model.time_step;
   return std::clamp(7 * std::sqrt(way * mean_radius), 0.1 * mean_radius, 2 * mean_radius);
 }
@@ -182,23 +121,20 @@ void search_near(RunningMill& mill, bool settled) {
   for (std::size_t i = 0; i < c.size(); ++i)
     if (!(c.x[i] * c.x[i] + c.y[i] * c.y[i] < radius * radius))
       left_physics(mill, fmt::format("ball {} is outside the shell", c.id[i]));
-  const double mean = std::accumulate(c.radius.begin(), c.radius.end(), 0.0) / double(c.size());
-  mill.skin = best_skin(mill, mean);
-  mill.grid.fill(c, 2 * mean + mill.skin);
+  mill.skin = best_skin(mill);
+  mill.grid.fill(c, 2 * mill.mean_radius + mill.skin);
   if (mill.searches_per_sort > 0 && mill.searches++ % mill.searches_per_sort == 0) sort_by_cell(mill);
-  const double smallest = *std::min_element(c.radius.begin(), c.radius.end());
   std::vector<Known> known;
   if (!settled)
     for (const Kind kind : {Kind::kBalls, Kind::kPlate, Kind::kLifters}) known.emplace_back(mill, kind);
   for_shares(mill, [&](Share& share) {
     for (int p = share.first; p < share.last; ++p) {
       Patch& patch = mill.patches[static_cast<std::size_t>(p)];
-      near_balls(mill, patch, share, smallest, settled ? nullptr : &known[0]);
+      near_balls(mill, patch, share, settled ? nullptr : &known[0]);
       near_wall(mill, patch, settled ? nullptr : &known[1], settled ? nullptr : &known[2]);
-      find_reach(patch);
     }
   });
-  find_neighbours(mill);
+  share_out(mill);
   mill.moved = 0;
   mill.stale = false;
 }

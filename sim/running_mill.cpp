@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <numeric>
 #include <utility>
@@ -11,6 +12,7 @@
 #include "core/parallel_for.h"
 #include "sim/contact_forces.h"
 #include "sim/near_search.h"
+#include "sim/patches.h"
 
 namespace tumble::sim {
 void left_physics(const RunningMill& mill, const std::string& what) {
@@ -59,9 +61,22 @@ void take_over(RunningMill& mill, Share& share, const Patch& patch) {
   }
 }
 
+// Adds the time that it lives to `seconds`.
+struct Stopwatch {
+  using Clock = std::chrono::steady_clock;
+  explicit Stopwatch(double& seconds) : seconds_(seconds), start_(Clock::now()) {}
+  ~Stopwatch() { seconds_ += std::chrono::duration<double>(Clock::now() - start_).count(); }
+  Stopwatch(const Stopwatch&) = delete;
+  Stopwatch& operator=(const Stopwatch&) = delete;
+
+ private:
+  double& seconds_;
+  Clock::time_point start_;
+};
+
 // One step of the balls between two searches. A patch is drifted when the first contacts ask for it and kicked when the
 // last ones have been worked out, so that it goes through the cache once. Patches that contacts of several threads
-// reach are drifted before all others and kicked after them.
+// reach are drifted before all others and kicked after them, while one thread books what began and ended.
 void step_balls(RunningMill& mill, const ChargeView& balls, const KickTerms& terms) {
   const double time_step = mill.model.time_step;
   const auto drift = [&](const Patch& p) { mill.kernels->drift(balls, time_step, p.first, p.last); };
@@ -75,6 +90,7 @@ void step_balls(RunningMill& mill, const ChargeView& balls, const KickTerms& ter
         if (!patch_at(mill, p).apart) drift(patch_at(mill, p));
     });
   for_shares(mill, [&](Share& share) {
+    const Stopwatch watch(share.seconds);
     share.at_balls = share.at_wall = {};
     share.kick = {};
     share.begun.clear();
@@ -89,14 +105,16 @@ void step_balls(RunningMill& mill, const ChargeView& balls, const KickTerms& ter
         if (patch_at(mill, kicked).apart) kick(share, patch_at(mill, kicked));
     }
   });
-  if (!alone)
-    for_shares(mill, [&](Share& share) {
-      for (int p = share.first; p < share.last; ++p) {
-        if (patch_at(mill, p).apart) continue;
-        take_over(mill, share, patch_at(mill, p));
-        kick(share, patch_at(mill, p));
-      }
-    });
+  if (alone) return book_events(mill);
+  parallel_for(mill.shares.size() + 1, 1, [&](std::size_t task, std::size_t) {
+    if (task == 0) return book_events(mill);
+    Share& share = mill.shares[task - 1];
+    for (int p = share.first; p < share.last; ++p) {
+      if (patch_at(mill, p).apart) continue;
+      take_over(mill, share, patch_at(mill, p));
+      kick(share, patch_at(mill, p));
+    }
+  });
 }
 
 void turn_lifters(RunningMill& mill) {
@@ -212,30 +230,6 @@ std::vector<Contact> contacts_of(const RunningMill& mill, Kind kind) {
   return contacts;
 }
 
-namespace {
-
-void cut_up(RunningMill& mill, int threads, int balls_per_patch) {
-  const int balls = static_cast<int>(mill.charge.size());
-  // Whole batches of lanes, so that no two patches share one.
-  const int each = (balls_per_patch + kMostLanes - 1) / kMostLanes * kMostLanes;
-  const int patches = std::max(1, (balls + each / 2) / each);
-  mill.patches.resize(static_cast<std::size_t>(patches));
-  for (int p = 0; p < patches; ++p) {
-    mill.patches[static_cast<std::size_t>(p)].first = p * each;
-    mill.patches[static_cast<std::size_t>(p)].last = p + 1 < patches ? (p + 1) * each : balls;
-  }
-  mill.shares.resize(static_cast<std::size_t>(std::clamp(threads, 1, patches)));
-  const std::size_t shares = mill.shares.size();
-  for (std::size_t s = 0; s < shares; ++s) {
-    mill.shares[s].first = static_cast<int>(mill.patches.size() * s / shares);
-    mill.shares[s].last = static_cast<int>(mill.patches.size() * (s + 1) / shares);
-  }
-  // One patch stays in the cache, wherever its balls are.
-  mill.searches_per_sort = patches == 1 ? 0 : 4;
-}
-
-}  // namespace
-
 RunningMill start_mill(const MillModel& model, Charge charge, int threads, int balls_per_patch) {
   RunningMill mill;
   mill.model = model;
@@ -260,6 +254,8 @@ RunningMill start_mill(const MillModel& model, Charge charge, int threads, int b
     c.vy[i] -= half_fall;
     mill.fastest = std::max(mill.fastest, std::hypot(c.vx[i], c.vy[i]));
   }
+  mill.mean_radius = std::accumulate(c.radius.begin(), c.radius.end(), 0.0) / static_cast<double>(c.size());
+  mill.smallest_radius = *std::min_element(c.radius.begin(), c.radius.end());
   mill.flights.contacts.assign(c.size(), 0);
   mill.flights.apex = c.y;
   const auto lifters = static_cast<std::size_t>(model.shell.lifter_count);
@@ -280,7 +276,6 @@ void advance(RunningMill& mill) {
 
   turn_lifters(mill);
   step_balls(mill, balls, terms);
-  book_events(mill);
   book(mill);
 
   const double next = std::max(mill.fastest * m.time_step, shell);

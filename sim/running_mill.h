@@ -35,7 +35,8 @@ struct RunningMill {
   std::vector<Share> shares;  // one for each thread
 
   // Bookkeeping of the near pairs; changes no result.
-  double skin = 0;     // [m]
+  double mean_radius = 0, smallest_radius = 0;  // [m]
+  double skin = 0;                              // [m]
   double moved = 0;    // what the fastest ball or the shell may have moved since the near pairs were found [m]
   double fastest = 0;  // speed of the fastest ball [m/s]
   bool stale = true;   // near pairs must be searched for before use

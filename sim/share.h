@@ -34,8 +34,10 @@ struct Ended {
 
 // One thread's patches. Each thread sums up forces for itself.
 struct Share {
-  int first = 0, last = 0;  // patches
-  int low = 0, high = 0;    // balls that their contacts can reach
+  int first = 0, last = 0;       // patches
+  int low = 0, high = 0;         // balls that their contacts can reach
+  double work = 0, seconds = 0;  // of a step, as estimated; taken by its thread since the last search [s]
+  double pace = 1;               // work a second, as a share of the threads' mean
   // Rows, see ForceView: as many as there are balls between the last that waits for its kick and the first that has not
   // been reached, so that they stay in the cache.
   std::vector<double, tbb::cache_aligned_allocator<double>> forces;

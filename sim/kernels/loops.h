@@ -218,9 +218,13 @@ struct Loops {
   }
 
   [[gnu::flatten]] static void drift(const ChargeView& c, double time_step, int first, int last) {
+    using std::max;
     over_balls<Real>(first, last, [&](int i, const auto& at) {
       at.store(c.x + i, at.load(c.x + i) + at.load(c.vx + i) * time_step);
-      at.store(c.y + i, at.load(c.y + i) + at.load(c.vy + i) * time_step);
+      const Real y = at.load(c.y + i) + at.load(c.vy + i) * time_step, apex = at.load(c.apex + i);
+      at.store(c.y + i, y);
+      // Few balls rise freely: most of the time there is nothing to write.
+      if (L::bits(y > apex) != 0) at.store(c.apex + i, max(apex, y));
       at.store(c.angle + i, at.load(c.angle + i) + at.load(c.spin + i) * time_step);
     });
   }
@@ -273,9 +277,6 @@ struct Loops {
       at.store(c.vx + i, vx);
       at.store(c.vy + i, vy);
       at.store(c.spin + i, spin);
-      // Few balls rise freely: most of the time there is nothing to write.
-      const Real apex = at.load(c.apex + i);
-      if (L::bits(y > apex) != 0) at.store(c.apex + i, max(apex, y));
       mass_moment += exact.mass_moment(at.load(c.mass + i) * x);
       const Real square = at.counted(vx * vx + vy * vy);
       squares += square;

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 
@@ -36,6 +37,15 @@ double of_face(const Counts& places, Face face) {
   return std::accumulate(begin, begin + kAngleBins, 0.0);
 }
 double kinetic(const RunningMill& mill) { return energies_of(mill).kinetic; }
+
+TEST(Impacts, FallIntoBinsOfEqualRatio) {
+  for (double lost = 1e-12; lost < 1e6; lost *= 1.0137) {
+    const double bin = std::floor((std::log10(lost) - kLowestDecade) * kBinsPerDecade);
+    ASSERT_EQ(spectrum_bin(lost), std::clamp(bin, 0.0, kBins - 1.0)) << lost << " J";
+  }
+  EXPECT_EQ(spectrum_bin(1e-3), 6 * kBinsPerDecade) << "an edge belongs to the bin above it";
+  for (const double nothing : {0.0, -1.0, std::nan("")}) EXPECT_EQ(spectrum_bin(nothing), 0);
+}
 
 TEST(Impacts, LoseWhatTheRestitutionTakes) {
   const double speed = 0.8, e = 0.5, m = 0.06;
