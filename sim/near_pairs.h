@@ -14,8 +14,11 @@ struct NearPairs {
     int count = 0;
     void add(int a, int b) {
       if (count == static_cast<int>(i.size())) {
-        i.resize(i.size() + std::max<std::size_t>(1, i.size() / 128) * 64);
-        j.resize(i.size());
+        const std::size_t room = i.size() + std::max<std::size_t>(1, i.size() / 512) * 64;
+        for (std::vector<int>* column : {&i, &j}) {
+          column->reserve(room);  // by itself it would double
+          column->resize(room);
+        }
       }
       i[static_cast<std::size_t>(count)] = a;
       j[static_cast<std::size_t>(count++)] = b;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <numeric>
 
 #include "sim/ball_order.h"
 #include "sim/packing.h"
@@ -21,6 +22,13 @@ std::uint64_t hash_of(const Charge& c, const Ledger& l) {
   for (const auto* v : {&c.x, &c.y, &c.angle, &c.vx, &c.vy, &c.spin, &c.ax, &c.ay, &c.alpha, &c.end_x, &c.end_y})
     for (const double value : *v) mix(value);
   for (const double d : l.dissipated) mix(d);
+  const Impacts& n = l.impacts;
+  for (const Spectrum* spectrum : {&n.ball_ball, &n.ball_wall})
+    for (const auto* bins : {&spectrum->total, &spectrum->normal, &spectrum->tangential})
+      for (const double d : *bins) mix(d);
+  for (const auto* bins : {&n.wall_number, &n.wall_energy})
+    for (const double d : *bins) mix(d);
+  for (const double d : n.falls) mix(d);
   for (const double d : {l.drive_work, l.torque, l.torque_shear, l.torque_external, l.mass_moment}) mix(d);
   return h;
 }
@@ -100,7 +108,9 @@ TEST(Patches, GiveTheSameBits) {
   const auto run = [&](int threads, int balls_per_patch, int searches_per_sort) {
     RunningMill mill = start_mill(model, start, threads, balls_per_patch);
     mill.searches_per_sort = searches_per_sort;
+    mill.ledger.counting_impacts = true;
     for (int k = 0; k < 3000; ++k) advance(mill);
+    EXPECT_GT(std::accumulate(mill.ledger.impacts.falls.begin(), mill.ledger.impacts.falls.end(), 0.0), 100);
     if (balls_per_patch < 3000) {
       const auto apart =
           std::count_if(mill.patches.begin(), mill.patches.end(), [](const Patch& p) { return p.apart; });
