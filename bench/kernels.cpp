@@ -43,24 +43,8 @@ struct Scene {
     mill.kernels = &kernels;
     mill.lifters.cos = mill.lifter_cos.data();
     mill.lifters.sin = mill.lifter_sin.data();
-    Charge& c = mill.charge;
-    view = {c.x.data(),
-            c.y.data(),
-            c.angle.data(),
-            c.vx.data(),
-            c.vy.data(),
-            c.spin.data(),
-            c.ax.data(),
-            c.ay.data(),
-            c.alpha.data(),
-            c.radius.data(),
-            c.mass.data(),
-            c.half_step_per_mass.data(),
-            c.half_step_per_inertia.data(),
-            c.end_x.data(),
-            c.end_y.data(),
-            mill.flights.apex.data()};
-    const auto room = std::bit_ceil(c.size() + kMostLanes);
+    view = view_of(mill);
+    const auto room = std::bit_ceil(mill.charge.size() + kMostLanes);
     rows.resize(room * kRow);
     forces = {rows.data(), static_cast<int>(room) - 1};
   }

@@ -35,18 +35,17 @@ void move_balls(RunningMill& mill, const std::vector<int>& order) {
 
   std::vector<int> place(order.size());
   for (std::size_t p = 0; p < order.size(); ++p) place[static_cast<std::size_t>(order[p])] = static_cast<int>(p);
-  for_shares(mill, [&](Share& share) {
-    for (int p = share.first; p < share.last; ++p)
-      for (int kind = 0; kind < kKinds; ++kind) {
-        ContactTable& table = mill.patches[static_cast<std::size_t>(p)].touching[static_cast<std::size_t>(kind)];
-        for (int k = 0; k < table.size(); ++k) {
-          int& i = table.i[static_cast<std::size_t>(k)];
-          i = place[static_cast<std::size_t>(i)];
-          if (kind != static_cast<int>(Kind::kBalls)) continue;
-          int& j = table.j[static_cast<std::size_t>(k)];
-          j = place[static_cast<std::size_t>(j)];
-        }
+  for_patches(mill, [&](Patch& patch, Share&) {
+    for (int kind = 0; kind < kKinds; ++kind) {
+      ContactTable& table = patch.touching[static_cast<std::size_t>(kind)];
+      for (int k = 0; k < table.size(); ++k) {
+        int& i = table.i[static_cast<std::size_t>(k)];
+        i = place[static_cast<std::size_t>(i)];
+        if (kind != static_cast<int>(Kind::kBalls)) continue;
+        int& j = table.j[static_cast<std::size_t>(k)];
+        j = place[static_cast<std::size_t>(j)];
       }
+    }
   });
   mill.stale = true;
 }
@@ -85,11 +84,8 @@ void sort_contacts(const Patch& patch, ContactTable& table, Share& space) {
 void sort_by_cell(RunningMill& mill) {
   move_balls(mill, mill.grid.balls());
   for (const Kind kind : {Kind::kBalls, Kind::kPlate, Kind::kLifters}) deal_out(mill, kind);
-  for_shares(mill, [&](Share& share) {
-    for (int p = share.first; p < share.last; ++p) {
-      Patch& patch = mill.patches[static_cast<std::size_t>(p)];
-      for (ContactTable& table : patch.touching) sort_contacts(patch, table, share);
-    }
+  for_patches(mill, [&](Patch& patch, Share& share) {
+    for (ContactTable& table : patch.touching) sort_contacts(patch, table, share);
   });
   mill.grid.number_afresh();
 }

@@ -3,7 +3,7 @@
 
 namespace tumble::sim {
 
-// Contacts of a patch at the balls' present positions: their forces into the share's window, their losses into its
+// Contacts of a patch at the balls' present positions: their forces into the share's rows, their losses into its
 // sums, and what has begun and ended. Throws WorkError where bodies overlap by more than half a radius.
 void contact_forces(const RunningMill& mill, const ChargeView& balls, Patch& patch, Share& share);
 

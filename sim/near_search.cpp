@@ -127,12 +127,9 @@ void search_near(RunningMill& mill, bool settled) {
   std::vector<Known> known;
   if (!settled)
     for (const Kind kind : {Kind::kBalls, Kind::kPlate, Kind::kLifters}) known.emplace_back(mill, kind);
-  for_shares(mill, [&](Share& share) {
-    for (int p = share.first; p < share.last; ++p) {
-      Patch& patch = mill.patches[static_cast<std::size_t>(p)];
-      near_balls(mill, patch, share, settled ? nullptr : &known[0]);
-      near_wall(mill, patch, settled ? nullptr : &known[1], settled ? nullptr : &known[2]);
-    }
+  for_patches(mill, [&](Patch& patch, Share& share) {
+    near_balls(mill, patch, share, settled ? nullptr : &known[0]);
+    near_wall(mill, patch, settled ? nullptr : &known[1], settled ? nullptr : &known[2]);
   });
   share_out(mill);
   mill.moved = 0;

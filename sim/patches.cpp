@@ -6,8 +6,6 @@
 namespace tumble::sim {
 namespace {
 
-Patch& patch_at(RunningMill& mill, int p) { return mill.patches[static_cast<std::size_t>(p)]; }
-
 // The balls that the patch's contacts can reach until the next search.
 void find_reach(Patch& patch) {
   int low = patch.first, high = patch.last;
@@ -37,14 +35,11 @@ void find_neighbours(RunningMill& mill) {
                                          [](int b, const Patch& p) { return b < p.first; });
     return static_cast<int>(behind - mill.patches.begin()) - 1;
   };
-  for_shares(mill, [&](Share& share) {
-    for (int p = share.first; p < share.last; ++p) {
-      Patch& patch = patch_at(mill, p);
-      find_reach(patch);
-      patch.low_patch = patch_of(patch.low);
-      patch.high_patch = patch_of(patch.high - 1);
-      patch.apart = true;
-    }
+  for_patches(mill, [&](Patch& patch, Share&) {
+    find_reach(patch);
+    patch.low_patch = patch_of(patch.low);
+    patch.high_patch = patch_of(patch.high - 1);
+    patch.apart = true;
   });
 }
 

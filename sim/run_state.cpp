@@ -167,20 +167,12 @@ std::size_t count_contacts(const RunningMill& mill, Kind kind) {
 }
 
 void tell_contacts(Teller& teller, const RunningMill& mill, Kind kind) {
-  const std::vector<int>& id = mill.charge.id;
   teller(static_cast<std::int64_t>(count_contacts(mill, kind)));
-  for (const Patch& patch : mill.patches) {
-    const ContactTable& table = patch.touching[static_cast<std::size_t>(kind)];
-    for (int k = 0; k < table.size(); ++k) {
-      Contact c = contact_at(table, k);
-      c.i = id[static_cast<std::size_t>(c.i)];
-      if (kind == Kind::kBalls) c.j = id[static_cast<std::size_t>(c.j)];
-      if (kind == Kind::kBalls && c.i > c.j) std::swap(c.i, c.j);
-      for (const int v : {c.i, c.j, int{c.place}}) teller(std::int64_t{v});
-      for (const double* v : words_in(c.state)) teller(*v);
-      for (const double* v : words_in(c.terms)) teller(*v);
-    }
-  }
+  for_contacts(mill, kind, [&](Contact c) {
+    for (const int v : {c.i, c.j, int{c.place}}) teller(std::int64_t{v});
+    for (const double* v : words_in(c.state)) teller(*v);
+    for (const double* v : words_in(c.terms)) teller(*v);
+  });
 }
 
 void read_contacts(Reader& reader, RunningMill& mill, Kind kind) {

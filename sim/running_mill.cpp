@@ -22,8 +22,6 @@ void left_physics(const RunningMill& mill, const std::string& what) {
                               mill.step, double(mill.step) * mill.model.time_step, what, mill.model.time_step));
 }
 
-namespace {
-
 ChargeView view_of(RunningMill& mill) {
   Charge& c = mill.charge;
   return {c.x.data(),
@@ -44,7 +42,7 @@ ChargeView view_of(RunningMill& mill) {
           mill.flights.apex.data()};
 }
 
-Patch& patch_at(RunningMill& mill, int p) { return mill.patches[static_cast<std::size_t>(p)]; }
+namespace {
 
 // Forces of other shares on the balls of this patch, into the rows of its own share.
 void take_over(RunningMill& mill, Share& share, const Patch& patch) {
@@ -85,9 +83,8 @@ void step_balls(RunningMill& mill, const ChargeView& balls, const KickTerms& ter
   };
   const bool alone = mill.shares.size() == 1;
   if (!alone)
-    for_shares(mill, [&](Share& share) {
-      for (int p = share.first; p < share.last; ++p)
-        if (!patch_at(mill, p).apart) drift(patch_at(mill, p));
+    for_patches(mill, [&](Patch& patch, Share&) {
+      if (!patch.apart) drift(patch);
     });
   for_shares(mill, [&](Share& share) {
     const Stopwatch watch(share.seconds);
@@ -216,17 +213,7 @@ ExactSums exact_sums(const MillModel& model, const Charge& charge) {
 
 std::vector<Contact> contacts_of(const RunningMill& mill, Kind kind) {
   std::vector<Contact> contacts;
-  const std::vector<int>& id = mill.charge.id;
-  for (const Patch& patch : mill.patches) {
-    const ContactTable& table = patch.touching[static_cast<std::size_t>(kind)];
-    for (int k = 0; k < table.size(); ++k) {
-      Contact c = contact_at(table, k);
-      c.i = id[static_cast<std::size_t>(c.i)];
-      if (kind == Kind::kBalls) c.j = id[static_cast<std::size_t>(c.j)];
-      if (kind == Kind::kBalls && c.i > c.j) std::swap(c.i, c.j);
-      contacts.push_back(c);
-    }
-  }
+  for_contacts(mill, kind, [&](const Contact& c) { contacts.push_back(c); });
   return contacts;
 }
 

@@ -2,6 +2,8 @@
 #include <array>
 #include <cstdint>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "core/parallel_for.h"
 #include "sim/cell_grid.h"
@@ -64,12 +66,39 @@ void for_shares(RunningMill& mill, const Body& body) {
   });
 }
 
+inline Patch& patch_at(RunningMill& mill, int p) { return mill.patches[static_cast<std::size_t>(p)]; }
+
+// body(patch, share), each in its share's thread.
+template <class Body>
+void for_patches(RunningMill& mill, const Body& body) {
+  for_shares(mill, [&](Share& share) {
+    for (int p = share.first; p < share.last; ++p) body(patch_at(mill, p), share);
+  });
+}
+
+// The balls as the kernels see them.
+ChargeView view_of(RunningMill& mill);
+
 // Balls as they lie at step 0, with their velocities at that moment (taken from `vx`, `vy`, `spin`). `threads` share
 // the work of a step, in patches of so many balls.
 inline constexpr int kBallsPerPatch = 2048;
 RunningMill start_mill(const MillModel& model, Charge charge, int threads = 1, int balls_per_patch = kBallsPerPatch);
 
-// The contacts of one kind, in no order; i and j are the balls' numbers.
+// visit(contact) for those of one kind, in no order; i and j are the balls' numbers.
+template <class Visit>
+void for_contacts(const RunningMill& mill, Kind kind, const Visit& visit) {
+  const std::vector<int>& id = mill.charge.id;
+  for (const Patch& patch : mill.patches) {
+    const ContactTable& table = patch.touching[static_cast<std::size_t>(kind)];
+    for (int k = 0; k < table.size(); ++k) {
+      Contact c = contact_at(table, k);
+      c.i = id[static_cast<std::size_t>(c.i)];
+      if (kind == Kind::kBalls) c.j = id[static_cast<std::size_t>(c.j)];
+      if (kind == Kind::kBalls && c.i > c.j) std::swap(c.i, c.j);
+      visit(c);
+    }
+  }
+}
 std::vector<Contact> contacts_of(const RunningMill& mill, Kind kind);
 
 // One time step: drift, contact forces, kick. Throws WorkError when the run leaves physics.
