@@ -1,233 +1,378 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <opencv2/core/utility.hpp>
 
+#include "analysis/ball_plane.h"
+#include "analysis/ballistics.h"
 #include "analysis/charge_motion.h"
 #include "analysis/charge_statistics.h"
-#include "analysis/film_survey.h"
-#include "analysis/lifters.h"
-#include "analysis/mill_scale.h"
+#include "analysis/film_pass.h"
+#include "analysis/film_reader.h"
+#include "analysis/frame_clock.h"
+#include "analysis/time_base.h"
 #include "analysis/tracking.h"
 #include "analysis/view.h"
 #include "core/angle.h"
 #include "core/error.h"
+#include "core/mill_shape.h"
 #include "core/statistics.h"
 
 namespace tumble::analysis {
 namespace {
 
-constexpr double kSurveyShare = 0.15, kDetectShare = 0.8;  // of the work, for the progress
+constexpr double kLeastScore = 0.2;      // of a ball: looked at at all
+constexpr double kCalibrateShare = 0.2;  // of the work, for the progress
+constexpr double kPassShare = 0.95;
+constexpr double kWorstRoll = 1.5;  // standard error beyond which a camera's roll is not believed [degrees]
 
-struct Pass {                                 // what the pass over the whole film leaves
-  std::vector<std::vector<Detection>> balls;  // by frame
-  std::vector<double> angle;                  // of the drum, unwrapped, counter-clockwise as seen [rad]
-  cv::Size size;
+// Where the mill is in the pictures, and in which unit its lengths are.
+struct Scene {
+  DrumView drum;
+  Circle bound;       // round everything inside the shell [px]
+  double radius = 1;  // of the shell, in the camera's unit
+  double tip_radius = 1;
+  double pixels_per_unit = 1;  // in the middle of the glass
+  std::vector<double> radii;   // of the size classes, in the camera's unit
+  double metres = kNotGiven;   // per unit; NaN where nothing tells
 };
 
-Pass detect_all(const std::string& path, const FilmSurvey& survey, const BallLook& look, const DrumPattern& drum,
-                const Progress& progress) {
-  Pass pass;
+std::vector<cv::Mat> sample_pictures(const std::string& path) {
   FilmReader film(path);
-  pass.size = film.size();
-  const DrumUnroller unroll(survey.centre, strip_inner(survey.centre), strip_outer(survey.centre), film.size());
-  const int count = std::max(film.frame_count(), survey.frames);
+  std::vector<cv::Mat> pictures;
   cv::Mat picture;
-  double angle = 0, step = drum.step;
-  while (film.next(picture)) {
-    pass.balls.push_back(detect_balls(picture, look, survey.centre));
-    if (drum.found) {
-      const double expected = pass.angle.empty() ? 0.0 : angle + step;
-      angle = drum_angle(drum, unroll(picture), expected);
-      pass.angle.push_back(angle);
-    }
-    report(progress, kSurveyShare + kDetectShare * std::min(1.0, static_cast<double>(pass.balls.size()) / count));
-  }
-  return pass;
+  for (int f = 0; f <= 36 && film.next(picture); ++f)
+    if (f % 12 == 0) pictures.push_back(picture.clone());
+  return pictures;
 }
 
-Estimate turn_per_frame(const std::vector<double>& angle) {
+Scene make_scene(DrumView drum, const Config& known) {
+  Scene scene;
+  const MillCamera& camera = drum.camera;
+  scene.radius = known.mill.diameter > 0 ? 0.5 * known.mill.diameter : 1.0;
+  if (known.mill.diameter > 0) scene.metres = 1;
+  const cv::Point2d middle = picture_of(camera, {0, 0, 0});
+  scene.bound = {middle.x, middle.y, 0};
+  double sum = 0;
+  for (int k = 0; k < 72; ++k) {
+    const double a = 2 * kPi * k / 72;
+    const cv::Point2d p = picture_of(camera, {scene.radius * std::cos(a), scene.radius * std::sin(a), 0});
+    const double reach = std::hypot(p.x - middle.x, p.y - middle.y);
+    scene.bound.radius = std::max(scene.bound.radius, 1.01 * reach);
+    sum += reach / 72;
+  }
+  scene.pixels_per_unit = sum / scene.radius;
+
+  scene.tip_radius = scene.radius;
+  const MillShape shape = make_mill_shape(known);  // worn as the file has it
+  if (shape.tip_radius < shape.radius) {
+    scene.tip_radius = scene.radius * shape.tip_radius / shape.radius;
+  } else if (known.mill.lifters.height > 0 && known.mill.diameter > 0) {
+    scene.tip_radius = scene.radius - known.mill.lifters.height;
+  } else if (!known.origin.contains("mill.lifters.profile")) {
+    for (const RingFound& ring : drum.rings)
+      if (ring.kind == RingKind::kLifterTips) scene.tip_radius = ring.radius;
+  }
+  scene.drum = std::move(drum);
+  return scene;
+}
+
+// Places as for balls that touch the inside of the front glass, as the camera sees them.
+std::vector<SeenFrame> places_of(const std::vector<FilmFrame>& film, const FrameClock& clock, const Scene& scene) {
+  std::vector<SeenFrame> frames(film.size());
+  const double readout = std::isnan(scene.drum.readout.value) ? 0.0 : scene.drum.readout.value;
+  for (std::size_t f = 0; f < film.size(); ++f) {
+    frames[f].time = clock.source[f];
+    for (std::size_t k = 0; k < film[f].balls.size(); ++k) {
+      const Detection& d = film[f].balls[k];
+      Sighting s;
+      s.radius = scene.radii[static_cast<std::size_t>(d.size_class)];
+      const Eigen::Vector2d place = mill_place_at(scene.drum.camera, {d.u, d.v}, -s.radius);
+      s.x = place.x();
+      s.y = place.y();
+      if (!(std::hypot(s.x, s.y) + s.radius < scene.radius + 0.4 * s.radius)) continue;
+      s.deviation = d.deviation / scene.pixels_per_unit;
+      s.size_class = d.size_class;
+      s.score = d.score;
+      s.visible = d.visible;
+      s.colour = film[f].colours[k];
+      s.u = d.u;
+      s.v = d.v;
+      s.time = clock.source[f] + readout * ((d.v + 0.5) / scene.drum.camera.height - 0.5);
+      frames[f].balls.push_back(s);
+    }
+  }
+  return frames;
+}
+
+void multiply_places(std::vector<SeenFrame>& frames, double factor) {
+  for (SeenFrame& f : frames)
+    for (Sighting& s : f.balls) {
+      s.x *= factor;
+      s.y *= factor;
+    }
+}
+
+// Lengths by the balls: where mill and balls are both known, they better the camera's scale; where one is missing, the
+// balls' touching gives their size in the unit of the other.
+void settle_lengths(std::vector<SeenFrame>& frames, Scene& scene, const std::vector<double>& sizes,
+                    std::vector<std::string>& caveats) {
+  const bool mill_known = !std::isnan(scene.metres), sizes_known = sizes.size() == scene.radii.size();
+  const BallPlane plane = measure_ball_plane(frames, scene.radius, {1.0, scene.drum.scale.se});
+  if (mill_known && sizes_known) {
+    multiply_places(frames, plane.factor.value);
+    if (!std::isnan(plane.touching.value) && !std::isnan(plane.reach.value) &&
+        std::abs(plane.touching.value / plane.reach.value - 1) > 0.03)
+      caveats.push_back(
+          fmt::format("the balls' sizes and the mill's diameter do not fit together: by the distance at which balls "
+                      "touch, the mill "
+                      "would be {:.1f} % {} than mill.diameter; check mill.diameter and charge.balls",
+                      100 * std::abs(plane.reach.value / plane.touching.value - 1),
+                      plane.reach.value > plane.touching.value ? "larger" : "smaller"));
+    return;
+  }
+  if (!std::isnan(plane.touching.value)) {
+    for (double& r : scene.radii) r *= plane.touching.value;
+    for (SeenFrame& f : frames)
+      for (Sighting& s : f.balls) s.radius *= plane.touching.value;
+  }
+  if (sizes_known) scene.metres = sizes.front() / scene.radii.front();
+}
+
+// Slope of the drum's angle over time, its error allowing for correlation.
+Estimate turn_per_frame(const std::vector<double>& time, const std::vector<double>& angle) {
   const double n = static_cast<double>(angle.size());
   if (n < 3) return {};
   double st = 0, stt = 0, sa = 0, sta = 0;
   for (std::size_t i = 0; i < angle.size(); ++i) {
-    const double t = static_cast<double>(i);
-    st += t;
-    stt += t * t;
+    st += time[i];
+    stt += time[i] * time[i];
     sa += angle[i];
-    sta += t * angle[i];
+    sta += time[i] * angle[i];
   }
   const double slope = (n * sta - st * sa) / (n * stt - st * st);
   std::vector<double> residual;
-  for (std::size_t i = 0; i < angle.size(); ++i)
-    residual.push_back(angle[i] - sa / n - slope * (static_cast<double>(i) - st / n));
-  // Error of a slope whose residuals are correlated: that of the mean, times the lever of a straight line.
-  const double se = mean_of_series(residual).se;
-  return {slope, se * std::sqrt(12.0) / n};
+  for (std::size_t i = 0; i < angle.size(); ++i) residual.push_back(angle[i] - sa / n - slope * (time[i] - st / n));
+  return {slope, mean_of_series(residual).se / std::sqrt(std::max(1e-12, stt / n - st * st / (n * n)))};
 }
 
-// Annuli of the strips between lifter tips and shell.
-cv::Range lifter_rows(const FilmSurvey& survey, const MillView& view) {
-  const double inner = strip_inner(survey.centre), outer = strip_outer(survey.centre);
-  const auto row = [&](double r) { return (r - inner) / (outer - inner) * DrumStrip::kAnnuli; };
-  const int from = std::max(0, static_cast<int>(std::ceil(row(view.tip_radius) - 0.2)));
-  const int to = std::min(DrumStrip::kAnnuli, static_cast<int>(std::floor(row(view.mill.radius) + 0.2)));
-  return from < to ? cv::Range(from, to) : cv::Range(0, 0);
+FreeFall fall_of(const std::vector<SeenFrame>& frames, const Scene& scene) {
+  std::vector<TimedPlace> places;
+  for (const SeenFrame& f : frames)
+    for (const Sighting& s : f.balls)
+      if (s.track >= 0)
+        places.push_back({s.track, f.time, s.x, s.y, s.deviation, (s.v + 0.5) / scene.drum.camera.height});
+  FallOptions options;
+  options.readout_share = std::isnan(scene.drum.readout.value) ? 0.0 : scene.drum.readout.value;
+  return find_free_fall(places, options);
 }
 
-std::vector<std::vector<Sighting>> sightings_of(const Pass& pass, const MillView& view, bool clockwise) {
-  std::vector<std::vector<Sighting>> frames(pass.balls.size());
-  for (std::size_t f = 0; f < pass.balls.size(); ++f)
-    for (const Detection& d : pass.balls[f]) {
-      Sighting s;
-      s.radius = view.radii[static_cast<std::size_t>(d.size_class)];
-      const cv::Point2d place = about_axis(d, view);
-      s.x = (clockwise ? -1.0 : 1.0) * place.x;
-      s.y = place.y;
-      s.size_class = d.size_class;
-      s.score = d.score;
-      if (std::hypot(s.x, s.y) + s.radius > view.mill.radius + 0.3 * s.radius) continue;
-      frames[f].push_back(s);
+// The mill frame upright, and counter-clockwise.
+void turn_upright(std::vector<SeenFrame>& frames, double roll, bool clockwise) {
+  const double c = std::cos(roll), s = std::sin(roll);
+  for (SeenFrame& f : frames)
+    for (Sighting& b : f.balls) {
+      const double x = c * b.x + s * b.y, y = c * b.y - s * b.x;
+      const double vx = c * b.vx + s * b.vy, vy = c * b.vy - s * b.vx;
+      b.x = clockwise ? -x : x;
+      b.y = y;
+      b.vx = clockwise ? -vx : vx;
+      b.vy = vy;
     }
-  return frames;
+}
+
+// Bins of the ring, upright and counter-clockwise, of which half and more is covered by what stands still.
+std::vector<bool> hidden_bins(const std::vector<double>& share, double roll_deg, bool clockwise) {
+  std::vector<bool> hidden(360, false);
+  if (share.size() != 360) return hidden;
+  for (int i = 0; i < 360; ++i) {
+    const double upright = i + 0.5, seen = (clockwise ? 180 - upright : upright) + roll_deg;
+    hidden[static_cast<std::size_t>(i)] = share[static_cast<std::size_t>(wrap_360(seen))] > 0.5;
+  }
+  return hidden;
 }
 
 }  // namespace
 
 ChargeMotion measure_film(const std::string& path, const FilmOptions& options, const Progress& progress) {
-  cv::setNumThreads(1);  // same bytes for any number of threads; the caller runs films side by side
-  const FilmSurvey survey = survey_film(path, [&](double done) { report(progress, kSurveyShare * done); });
+  cv::setNumThreads(1);  // pictures are looked at side by side instead
   const Config none;
   const Config& known = options.mill != nullptr ? *options.mill : none;
-
+  const std::vector<double> sizes = known_radii(known);
   ChargeMotion motion;
   motion.source = MotionSource::kFilm;
-  FilmReader reader(path);
-  motion.frames_per_second = std::isnan(options.recorded_fps) ? reader.frames_per_second() : options.recorded_fps;
-  const double fps = motion.frames_per_second;
+  const FilmReader reader(path);
 
-  ScaleRange scales;  // the shell lies among the circles about the axis; rims look up to 15 % smaller or larger
-  if (known.mill.diameter > 0) {
-    scales.least = 0.85 * strip_inner(survey.centre) / (0.5 * known.mill.diameter);
-    scales.most = 1.15 * strip_outer(survey.centre) / (0.5 * known.mill.diameter);
-  }
-  const BallLook look = learn_look(survey.samples, survey.centre, known_radii(known), scales);
-  const DrumPattern drum = learn_drum(survey.strips, known.mill.lifters.count, kNotGiven);
-  Pass pass = detect_all(path, survey, look, drum, progress);
-  motion.frames = static_cast<int>(pass.balls.size());
+  DrumView drum = calibrate_drum(path, known, [&](double done) { report(progress, kCalibrateShare * done); });
+  motion.caveats = drum.caveats;
+  if (!drum.found) throw InputError(path, drum.caveats.empty() ? "shows no turning mill" : drum.caveats.front());
+  Scene scene = make_scene(std::move(drum), known);
+
+  BallNet net;
+  ScaleRange scales;
+  if (known.mill.diameter > 0) scales = {0.88 * scene.pixels_per_unit, 1.08 * scene.pixels_per_unit};
+  const BallLook look = learn_look(net, sample_pictures(path), scene.bound, sizes, scales);
+  if (look.radii.empty())
+    throw InputError(path, "shows no balls; balls of at least 3 pixels' radius were expected in the mill");
+  const std::vector<FilmFrame> film = look_through(path, scene.drum, look, scene.bound, kLeastScore, [&](double done) {
+    report(progress, kCalibrateShare + (kPassShare - kCalibrateShare) * done);
+  });
+  motion.frames = static_cast<int>(film.size());
   if (motion.frames < 0.98 * reader.frame_count() - 2)
     motion.caveats.push_back(fmt::format("the film breaks off: {} of the {} frames that it announces could be read",
                                          motion.frames, reader.frame_count()));
 
+  // Which recorded picture each frame is.
+  const double sense_seen = scene.drum.turn_per_frame.value < 0 ? -1.0 : 1.0;
+  std::vector<double> differences, angles;
+  for (const FilmFrame& f : film) {
+    differences.push_back(f.difference);
+    angles.push_back(sense_seen * f.drum.angle);
+  }
+  FrameEvidence evidence;
+  evidence.difference = differences;
+  evidence.angle = angles;
+  const FrameClock clock = find_frame_clock(evidence);
+  motion.duplicated_frames = clock.duplicated;
+  for (const DroppedFrames& d : clock.dropped) motion.dropped_frames.push_back(d.after);
+
   motion.rotation = options.rotation;
-  const Rotation seen = drum.step > 0 ? Rotation::kCounterClockwise : Rotation::kClockwise;
-  if (motion.rotation == Rotation::kUnknown && drum.found) motion.rotation = seen;
-  if (drum.found && motion.rotation != seen)
+  const Rotation seen = sense_seen > 0 ? Rotation::kCounterClockwise : Rotation::kClockwise;
+  if (motion.rotation == Rotation::kUnknown) motion.rotation = seen;
+  if (motion.rotation != seen)
     motion.caveats.push_back(
         "the drum is seen to turn against the rotation that was given: speed is negative, toe and shoulder are not to "
-        "be "
-        "trusted; leave --rotation at auto");
+        "be trusted; leave --rotation at auto");
   const bool clockwise = motion.rotation == Rotation::kClockwise;
-  if (!drum.found) motion.caveats.push_back("nothing that turns with the drum was made out: speed unknown");
-  if (motion.rotation == Rotation::kUnknown)
-    motion.caveats.push_back("direction of rotation unknown, taken as counter-clockwise; give --rotation");
 
-  // Lifters taken for balls would lie against the shell: they are found with a first view, which needs to be good to a
-  // few percent only, and taken out before the second.
-  std::vector<std::string> first_caveats;
-  MillView view = find_view(pass.balls, look, survey, drum, known, first_caveats);
-  const double guess = lifter_phase(drum, survey.strips, lifter_rows(survey, view));
-  const LifterLattice lifters = find_lifters(pass.balls, pass.angle, view, drum.lifter_count, guess);
-  for (std::size_t f = 0; f < pass.angle.size(); ++f)
-    std::erase_if(pass.balls[f], [&](const Detection& d) { return within_lifter(d, view, lifters, pass.angle[f]); });
-  view = find_view(pass.balls, look, survey, drum, known, motion.caveats);
-  motion.camera.centre_u_px = view.mill.u;
-  motion.camera.centre_v_px = view.mill.v;
-  motion.camera.radius_px = view.mill.radius;
-  motion.camera.metres_per_pixel = view.metres_per_pixel;
-  motion.camera.width_px = pass.size.width;
-  motion.camera.height_px = pass.size.height;
-  motion.lifter_count = drum.found ? drum.lifter_count : known.mill.lifters.count;
-  const double unit = std::isnan(view.metres_per_pixel) ? 1.0 : view.metres_per_pixel;
-  motion.mill_radius = view.mill.radius * view.metres_per_pixel;
-  motion.tip_radius = view.tip_radius * view.metres_per_pixel;
+  // Balls onto the plane in which they touch the glass.
+  for (std::size_t c = 0; c < look.radii.size(); ++c)
+    scene.radii.push_back(sizes.size() == look.radii.size() && !std::isnan(scene.metres)
+                              ? sizes[c] / scene.metres
+                              : look.radii[c] / scene.pixels_per_unit);
+  std::vector<SeenFrame> places = places_of(film, clock, scene);
+  settle_lengths(places, scene, sizes, motion.caveats);
 
-  const Estimate turn = drum.found ? turn_per_frame(pass.angle) : Estimate{};
+  // Repeats are not linked: each takes over what the frame before it shows.
+  std::vector<SeenFrame> frames;
+  std::vector<std::size_t> row_of;  // by frame of the file: in `frames`
+  std::vector<double> times, unique_angles;
+  for (std::size_t f = 0; f < places.size(); ++f) {
+    if (f == 0 || clock.source[f] != clock.source[f - 1]) {
+      frames.push_back(std::move(places[f]));
+      if (!std::isnan(film[f].drum.error)) {
+        times.push_back(clock.source[f]);
+        unique_angles.push_back(film[f].drum.angle);
+      }
+    }
+    row_of.push_back(frames.size() - 1);
+  }
+  const Estimate turn = turn_per_frame(times, unique_angles);
+
+  MotionModel model;
+  model.turn = turn.value;
+  link_sightings(frames, model);
+  const FreeFall fall = fall_of(frames, scene);
+  TimeWitnesses witnesses;
+  witnesses.told_rate = options.recorded_fps;
+  witnesses.file_rate = reader.frames_per_second();
+  if (!std::isnan(scene.metres)) witnesses.falling_rate = frames_per_second(fall, kGravity / scene.metres);
+  witnesses.turn_per_frame = {std::abs(turn.value), turn.se};
+  if (known.mill.speed > 0 || known.mill.speed_rpm > 0) witnesses.nominal_rpm = speed_rpm(known.mill);
+  const TimeBase base = judge_time_base(witnesses);
+  motion.caveats.insert(motion.caveats.end(), base.caveats.begin(), base.caveats.end());
+  const double fps = base.frames_per_second.value;
+  motion.frames_per_second = fps;
+  motion.camera.roll_deg = fall.roll_deg;
+  double roll_deg = fall.roll_deg.value;
+  if (!(fall.roll_deg.se < kWorstRoll)) {
+    roll_deg = 0;
+    motion.caveats.push_back("too few balls are seen to fall freely to find the camera's roll: taken as upright");
+  }
+  if (!std::isnan(fps) && !std::isnan(scene.metres)) {  // now that gravity is known, link once more
+    const double g = kGravity / scene.metres / (fps * fps), roll = radians(roll_deg);
+    model.gravity_x = g * std::sin(roll);
+    model.gravity_y = -g * std::cos(roll);
+    model.patience = std::clamp(0.03 * fps, 2.0, 8.0);
+    model.longest_gap = std::clamp(0.12 * fps, 4.0, 30.0);
+    link_sightings(frames, model);
+  }
+  smooth_velocities(frames, std::isnan(fps) ? 3.0 : std::clamp(0.025 * fps, 2.0, 20.0));
+  turn_upright(frames, radians(roll_deg), clockwise);
+
+  const double unit = std::isnan(scene.metres) ? 1.0 : scene.metres, rate = std::isnan(fps) ? 1.0 : fps;
+  const cv::Point2d middle = picture_of(scene.drum.camera, {0, 0, 0});
+  motion.camera.centre_u_px = middle.x;
+  motion.camera.centre_v_px = middle.y;
+  motion.camera.radius_px = scene.radius * scene.pixels_per_unit;
+  motion.camera.metres_per_pixel = scene.metres / scene.pixels_per_unit;
+  motion.camera.width_px = scene.drum.camera.width;
+  motion.camera.height_px = scene.drum.camera.height;
+  motion.mill_radius = scene.radius * scene.metres;
+  motion.tip_radius = scene.tip_radius * scene.metres;
+  motion.lifter_count = scene.drum.lifter_count > 0 ? scene.drum.lifter_count : known.mill.lifters.count;
   const double sense = clockwise ? -1.0 : 1.0;
-  const double revolutions = std::abs(turn.value) * motion.frames / (2 * kPi);
+  const double revolutions = std::abs(turn.value) * (clock.source.back() + 1) / (2 * kPi);
   if (revolutions < 1)
     motion.caveats.push_back(fmt::format("the film shows {:.2f} revolutions: too short for averages", revolutions));
   motion.speed_rpm = {rpm_from_rad_s(sense * turn.value * fps), rpm_from_rad_s(turn.se * fps)};
+  if (!std::isnan(base.frames_per_second.se))
+    motion.speed_rpm.se = std::hypot(motion.speed_rpm.se, motion.speed_rpm.value * base.frames_per_second.se / fps);
   Mill mill = known.mill;
   if (std::isnan(mill.diameter)) mill.diameter = 2 * motion.mill_radius;
   const double critical = critical_speed_rpm(mill);
   motion.speed_fraction = {motion.speed_rpm.value / critical, motion.speed_rpm.se / critical};
 
-  auto frames = sightings_of(pass, view, clockwise);
-  MotionModel model;
-  model.turn = drum.found ? sense * turn.value : 0.0;
-  model.tip_radius = view.tip_radius;
-  if (!std::isnan(view.metres_per_pixel) && !std::isnan(fps))
-    model.gravity = kGravity / view.metres_per_pixel / (fps * fps);
-  model.birth_score = look.birth_score;
-  model.patience = std::isnan(fps) ? 3 : std::max(2, static_cast<int>(std::lround(0.03 * fps)));
-  link_sightings(frames, model);
-  const int window = std::isnan(fps) ? 3 : std::clamp(2 * static_cast<int>(std::lround(0.0125 * fps)) + 1, 3, 21);
-  smooth_velocities(frames, window);
-
   MillGeometry geometry;
-  geometry.radius = view.mill.radius * unit;
-  geometry.tip_radius = view.tip_radius * unit;
-  double diameters = 0, area = 0, count = 0;
+  geometry.radius = scene.radius * unit;
+  geometry.tip_radius = scene.tip_radius * unit;
+  double diameters = 0, count = 0;
   std::vector<double> fillings;
-  for (const auto& f : frames) {
-    area = 0;
-    for (const Sighting& s : f) {
+  for (const SeenFrame& f : frames) {
+    double area = 0;
+    for (const Sighting& s : f.balls) {
       if (s.track < 0) continue;
       diameters += 2 * s.radius * unit;
       count += 1;
       area += s.radius * s.radius;
     }
-    fillings.push_back(area / (kSettledAreaShare * view.mill.radius * view.mill.radius));
+    fillings.push_back(area / (kSettledAreaShare * scene.radius * scene.radius));
   }
   if (count == 0)
     throw InputError(path, "shows no balls; balls of at least 3 pixels' radius were expected in the mill");
   motion.filling = mean_of_series(fillings);
   geometry.mean_diameter = diameters / count;
   const int passages = motion.lifter_count > 0 ? motion.lifter_count : kUsualLifters;
-  if (model.turn > 0) geometry.passage_frames = 2 * kPi / passages / model.turn;
-  if (!std::isnan(view.metres_per_pixel) && !std::isnan(fps)) geometry.gravity = kGravity;
+  if (turn.value != 0) geometry.passage_frames = 2 * kPi / passages / std::abs(turn.value);
+  if (!std::isnan(scene.metres) && !std::isnan(fps)) geometry.gravity = kGravity;
 
+  const std::vector<bool> hidden = hidden_bins(scene.drum.hidden_share, roll_deg, clockwise);
   ChargeStatistics statistics(geometry);
-  const double rate = std::isnan(fps) ? 1.0 : fps;
-  for (std::size_t f = 0; f < frames.size(); ++f) {
+  for (std::size_t f = 0; f < film.size(); ++f) {
     std::vector<TrackPoint> balls;
-    for (const Sighting& s : frames[f]) {
+    for (const Sighting& s : frames[row_of[f]].balls) {
       if (s.track < 0) continue;
       TrackPoint p;
       p.frame = static_cast<int>(f);
       p.id = s.track;
-      p.time = static_cast<double>(f) / rate;
+      p.time = s.time / rate;
       p.x = s.x * unit;
       p.y = s.y * unit;
       p.vx = s.vx * unit * rate;
       p.vy = s.vy * unit * rate;
       p.radius = s.radius * unit;
-      p.u_px = view.mill.u + (clockwise ? -s.x : s.x);
-      p.v_px = view.mill.v - s.y;
+      p.u_px = s.u;
+      p.v_px = s.v;
       balls.push_back(p);
     }
     std::sort(balls.begin(), balls.end(), [](const TrackPoint& a, const TrackPoint& b) { return a.id < b.id; });
-    const double at_start = std::isnan(lifters.angle) ? 0.0
-                            : clockwise               ? kPi - lifters.angle
-                                                      : lifters.angle;  // a lifter stands at the mill angle
-    const double angle = drum.found ? degrees(at_start + sense * pass.angle[f]) : kNotGiven;
-    statistics.add(static_cast<int>(f), static_cast<double>(f) / rate, angle, balls);
+    const double lifter = std::isnan(scene.drum.lifter_angle) ? 0.0 : scene.drum.lifter_angle;  // stands at the angle
+    const double as_seen = degrees(lifter + film[f].drum.angle) - roll_deg;
+    statistics.add(static_cast<int>(f), clock.source[f] / rate, clockwise ? 180 - as_seen : as_seen, balls, hidden);
   }
   statistics.finish(motion);
   shrink_to_film(motion, reader.enlarged());
-  if (std::isnan(view.metres_per_pixel)) forget_lengths(motion);
+  if (std::isnan(scene.metres)) forget_lengths(motion);
   report(progress, 1.0);
   return motion;
 }

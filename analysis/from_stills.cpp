@@ -20,6 +20,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr double kBirthScore = 0.4;  // of a ball that is believed
+
 std::vector<cv::Mat> read_stills(const std::string& folder) {
   std::error_code ec;
   if (!fs::is_directory(folder, ec))
@@ -104,11 +106,11 @@ ChargeMotion measure_stills(const std::string& folder, const FilmOptions& option
         "shows no mill; a view along the mill's axis was expected, with most of its round shell in the picture");
   report(progress, 0.1);
 
-  const BallLook look = learn_look(stills, survey.centre, known_radii(known));
+  BallEyes eyes;
+  const BallLook look = learn_look(eyes.net, stills, survey.centre, known_radii(known));
   std::vector<std::vector<Detection>> balls;
   for (const cv::Mat& still : stills) {
-    balls.push_back(detect_balls(still, look, survey.centre));
-    std::erase_if(balls.back(), [&](const Detection& d) { return d.score < look.birth_score; });
+    balls.push_back(detect_balls(eyes, still, look, survey.centre, kBirthScore).balls);
     report(progress, 0.1 + 0.5 * static_cast<double>(balls.size()) / static_cast<double>(stills.size()));
   }
   MillView view = find_view(balls, look, survey, DrumPattern{}, known, motion.caveats);

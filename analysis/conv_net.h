@@ -1,0 +1,45 @@
+#pragma once
+#include <functional>
+#include <oneapi/dnnl/dnnl.hpp>
+#include <span>
+#include <vector>
+
+namespace tumble::analysis {
+
+// A convolutional network with fixed weights, for inputs of one shape, built layer by layer and then run. A thin cover
+// of oneDNN: for the room's own nets alone. It stays in the thread that calls it.
+class ConvNet {
+ public:
+  using Memory = dnnl::memory;
+  using Dims = dnnl::memory::dims;
+
+  explicit ConvNet(std::span<const float> weights);  // in the order of the layers: (out, in, rows, columns), biases
+
+  struct Layer {
+    int channels = 0;  // out
+    int size = 3;      // rows and columns of the kernel
+    int stride = 1, dilation = 1;
+    bool padded = true;  // keeps the shape, but for the stride
+    bool rectify = true;
+  };
+  Memory plain(const Dims& dims);                          // batch, channels, rows, columns, one after the other
+  Memory copy(const Memory& from, const Memory& to = {});  // without `to` into memory of the same kind
+  Memory convolve(const Memory& from, const Layer& layer);
+  void add_convolved(const Memory& from, const Memory& onto, const Layer& layer);
+  void call(std::function<void()> step);
+  void check_complete() const;  // throws WorkError where weights are left over
+
+  void run();
+  static float* data_of(const Memory& m) { return static_cast<float*>(m.get_data_handle()); }
+
+ private:
+  Memory next_weights(const Dims& dims, Memory::format_tag tag);
+  void convolve(const Memory& from, const Layer& layer, bool add, Memory& to);
+
+  dnnl::engine engine_;
+  dnnl::stream stream_;
+  std::span<const float> weights_;
+  std::vector<std::function<void()>> steps_;
+};
+
+}  // namespace tumble::analysis

@@ -1,0 +1,74 @@
+#include "analysis/film_pass.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "analysis/film_reader.h"
+#include "analysis/frame_clock.h"
+#include "core/parallel_for.h"
+
+namespace tumble::analysis {
+namespace {
+
+// Mean colour of a ball's inner part, where its neighbours do not reach.
+std::array<float, 3> colour_of(const cv::Mat& bgr, const Detection& d) {
+  const double r = 0.6 * d.radius;
+  std::array<double, 3> sum{};
+  double count = 0;
+  const int v0 = std::max(0, static_cast<int>(std::ceil(d.v - r))),
+            u0 = std::max(0, static_cast<int>(std::ceil(d.u - r)));
+  for (int v = v0; v <= std::min(bgr.rows - 1, static_cast<int>(d.v + r)); ++v)
+    for (int u = u0; u <= std::min(bgr.cols - 1, static_cast<int>(d.u + r)); ++u) {
+      if ((u - d.u) * (u - d.u) + (v - d.v) * (v - d.v) > r * r) continue;
+      const auto& p = bgr.at<cv::Vec3b>(v, u);
+      for (int c = 0; c < 3; ++c) sum[static_cast<std::size_t>(c)] += p[c];
+      count += 1;
+    }
+  std::array<float, 3> colour{};
+  for (std::size_t c = 0; c < 3; ++c) colour[c] = static_cast<float>(count > 0 ? sum[c] / count : 0.0);
+  return colour;
+}
+
+}  // namespace
+
+std::vector<FilmFrame> look_through(const std::string& path, const DrumView& drum, const BallLook& look,
+                                    const Circle& bound, double least_score, const Progress& progress) {
+  FilmReader film(path);
+  const auto workers = static_cast<std::size_t>(thread_limit());
+  constexpr std::size_t kEach = 4;  // frames of a batch for each worker
+  std::vector<std::unique_ptr<BallEyes>> eyes;
+  for (std::size_t w = 0; w < workers; ++w) eyes.push_back(std::make_unique<BallEyes>());
+  std::vector<FilmFrame> frames;
+  std::vector<cv::Mat> pictures;
+  cv::Mat before, picture;
+  double expected = 0;
+  bool more = true;
+  while (more) {
+    const std::size_t first = frames.size();
+    pictures.clear();
+    while (pictures.size() < workers * kEach && (more = film.next(picture))) {
+      FilmFrame frame;
+      if (drum.reader != nullptr) {
+        frame.drum = (*drum.reader)(picture, expected);
+        expected = frame.drum.angle + drum.turn_per_frame.value;
+      }
+      if (!before.empty()) frame.difference = picture_difference(before, picture, bound.u, bound.v, bound.radius);
+      before = picture.clone();
+      frames.push_back(std::move(frame));
+      pictures.push_back(before);
+    }
+    parallel_for(workers, 1, [&](std::size_t from, std::size_t to) {
+      for (std::size_t w = from; w < to; ++w)
+        for (std::size_t i = w; i < pictures.size(); i += workers) {
+          FilmFrame& frame = frames[first + i];
+          frame.balls = detect_balls(*eyes[w], pictures[i], look, bound, least_score).balls;
+          for (const Detection& d : frame.balls) frame.colours.push_back(colour_of(pictures[i], d));
+        }
+    });
+    report(progress, std::min(1.0, static_cast<double>(frames.size()) / std::max(1, film.frame_count())));
+  }
+  return frames;
+}
+
+}  // namespace tumble::analysis
