@@ -24,8 +24,13 @@ constexpr double kLargestGap = 6;         // frames; a ball unseen for longer is
 constexpr double kLeastSupport = 12;      // log of the odds that so many candidates agree for no reason
 constexpr double kHiddenContact = 0.7;  // common error by contacts that hide in the noise at both ends of a flight of n
                                         // sightings: this over sqrt(n) of its error by noise; from films of mills
-constexpr double kStretchCost = 20;     // of one more stretch, in chi square
-constexpr double kSpike = 7;            // sigmas off its neighbours' cubic: a false sighting
+constexpr double kShortFlight = 0.04;   // the same where the noise is above kPrecise, of |a|: hops within the charge
+// Scatter of flights that is tried. Short ones at the far end of either have no common acceleration: they are balls
+// that roll down the charge, seen at few frames a second.
+constexpr std::array kNoiseFactors = {1.0, 1.3, 1.6, 2.0, 2.5, 3.0};
+constexpr std::array kScatters = {0.0, 0.003, 0.01, 0.02, 0.04};
+constexpr double kStretchCost = 20;       // of one more stretch, in chi square
+constexpr double kSpike = 7;              // sigmas off its neighbours' cubic: a false sighting
 constexpr double kLeastSignificance = 6;  // |a| over its error
 constexpr double kPrecise = 0.02;         // error of a flight's acceleration by noise, of |a|: a long one
 constexpr int kEnoughPrecise = 20;        // long flights that make the others unnecessary
@@ -365,8 +370,8 @@ Gravity find_gravity(const std::vector<Track>& tracks, std::vector<Candidate>& l
   if (list.size() < kEnoughForScatter) return settle(all, best, with_readout, 10);
   Gravity likeliest = best;
   double likelihood = -1;
-  for (const double factor : {1.0, 1.3, 1.6, 2.0, 2.5, 3.0})
-    for (const double scatter : {0.0, 0.003, 0.01, 0.02, 0.04}) {
+  for (const double factor : kNoiseFactors)
+    for (const double scatter : kScatters) {
       Gravity g = best;
       g.noise_factor = factor, g.scatter = scatter;
       g = settle(all, g, with_readout, 10);
@@ -467,7 +472,7 @@ FreeFall find_free_fall(std::span<const TimedPlace> places, const FallOptions& o
   std::vector<Candidate> list;
   std::vector<Track> tracks;
   Gravity gravity;
-  bool with_readout = false;
+  bool with_readout = false, precise = false;
   for (int pass = 1; pass <= kPasses; ++pass) {
     tracks = tracks_of(places, readout);
     if (std::isnan(noise)) noise = noise_factor(tracks);
@@ -480,7 +485,8 @@ FreeFall find_free_fall(std::span<const TimedPlace> places, const FallOptions& o
     if (!(gravity.square() > 0)) return fall;
     const double relative_noise = noise_of_flights(list, gravity);
     list = join_and_trim(tracks, list, gravity);
-    with_readout = keep_precise(list, gravity) && readout_unknown;
+    precise = keep_precise(list, gravity);
+    with_readout = precise && readout_unknown;
     gravity = find_gravity(tracks, list, options, with_readout, -readout);
     if (pass == kPasses || (!with_readout && std::abs(relative_noise - 1) < 0.03)) break;
     if (with_readout) readout += gravity.readout;
@@ -496,10 +502,13 @@ FreeFall find_free_fall(std::span<const TimedPlace> places, const FallOptions& o
     if (!is_flight(c, gravity)) continue;
     ++count;
     const double w = 1 / gravity.variance(c);
+    const double size = std::sqrt(gravity.square());
     hidden += w * kHiddenContact * c.sigma / std::sqrt(static_cast<double>(c.stretch.to - c.stretch.from));
+    if (c.sigma > kPrecise * size) hidden += w * kShortFlight * size;
     weights += w;
   }
   if (count < kLeastFlights) return fall;
+  if (!precise && (gravity.noise_factor >= kNoiseFactors.back() || gravity.scatter >= kScatters.back())) return fall;
   hidden /= weights;
   const Solution mean = weighted_mean(all, gravity, with_readout);
   const double a = std::sqrt(gravity.square());

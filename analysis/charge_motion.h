@@ -6,6 +6,7 @@
 
 #include "core/charge_motion.h"
 #include "core/frame.h"
+#include "core/pixel_tracks.h"
 #include "core/progress.h"
 
 // Front door of analysis: frames (truth) or pictures (films, stills) -> ChargeMotion.
@@ -38,6 +39,14 @@ struct FilmOptions {
 
 // A film in any container that OpenCV reads. Throws InputError when it cannot be read or no mill is found in it.
 ChargeMotion measure_film(const std::string& path, const FilmOptions& options, const Progress& progress = {});
+
+struct TracksOptions : FilmOptions {
+  double centre_u_px = kNotGiven, centre_v_px = kNotGiven;  // of the mill's axis; not given: by the balls it carries
+  double metres_per_pixel = kNotGiven;                      // not given: by the mill's diameter, else the balls' radii
+};
+
+// Balls that another program has followed through a film, in its pixels. The clock is told from flights.
+ChargeMotion measure_tracks(const PixelTracks& tracks, const TracksOptions& options);
 
 // A folder of still pictures of one mill, far apart in time or not, in order of their names.
 ChargeMotion measure_stills(const std::string& folder, const FilmOptions& options, const Progress& progress = {});

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <optional>
@@ -27,7 +28,11 @@ bool contradicts(double rate, const Estimate& e) {
   return std::abs(rate - e.value) > std::max(kContradiction * e.se, kLeastDifference * e.value);
 }
 
-std::string shown(const Estimate& e) { return fmt::format("{:.3g} +- {:.1g}", e.value, e.se); }
+// "119 +- 2", "29.97 +- 0.03": one digit of the error, two from 10 on.
+std::string shown(const Estimate& e) {
+  const int decimals = std::clamp(-static_cast<int>(std::floor(std::log10(e.se))), 0, 3);
+  return fmt::format("{:.{}f} +- {:.{}f}", e.value, decimals, e.se, decimals);
+}
 
 // The one camera rate that fits, if no other could be meant. A file of a x 1000/1001 rate tells which kind of clock the
 // camera has.

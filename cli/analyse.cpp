@@ -22,7 +22,8 @@ const std::map<std::string, Rotation> kRotations = {{"auto", Rotation::kUnknown}
 struct Options : CommonOptions {
   fs::path input, output, mill, csv;
   std::string rotation = "auto";
-  analysis::FilmOptions film;
+  std::string centre;
+  analysis::TracksOptions film;
 };
 
 void analyse(Options o) {
@@ -33,6 +34,9 @@ void analyse(Options o) {
   o.film.mill = mill ? &*mill : nullptr;
   if (!std::isnan(o.film.recorded_fps) && !(o.film.recorded_fps > 0))
     throw InputError("--recorded-fps", "must be a positive number of frames per second");
+  if (!o.centre.empty()) parse_point(o.centre, "--centre-px", o.film.centre_u_px, o.film.centre_v_px);
+  if (!std::isnan(o.film.metres_per_pixel) && !(o.film.metres_per_pixel > 0))
+    throw InputError("--metres-per-pixel", "must be a positive number of metres");
   io::check_not_input(o.output, o.input);
   if (mill) io::check_not_input(o.output, o.mill);
   io::check_output_file(o.output, o.force);
@@ -52,14 +56,21 @@ void analyse(Options o) {
 
 void add_analyse(CLI::App& app) {
   auto o = std::make_shared<Options>();
-  CLI::App* verb = app.add_subcommand("analyse", "Extract the charge's motion from a film, stills or a run file");
-  verb->add_option("input", o->input, "Film, folder of stills, or RUN.h5 (truth)")->required();
+  CLI::App* verb =
+      app.add_subcommand("analyse", "Extract the charge's motion from a film, stills, tracks or a run file");
+  verb->add_option("input", o->input,
+                   "Film, folder of stills, TRACKS.csv (track,frame,x_px,y_px,r_px), or RUN.h5 (truth)")
+      ->required();
   verb->add_option("-o,--output", o->output, "MOTION.h5 to write")->required();
   verb->add_option("--mill", o->mill, "MILL.toml with what is known of the mill; may be partial");
   verb->add_option("--csv", o->csv, "Folder for summary.json, profile.csv, tracks.csv, occupancy.csv");
   verb->add_option("--recorded-fps", o->film.recorded_fps, "The camera's rate where the file's is another, 1/s");
   verb->add_option("--rotation", o->rotation, "How the mill turns in the film: auto, clockwise, counter_clockwise")
       ->capture_default_str();
+  verb->add_option("--centre-px", o->centre,
+                   "u,v of the mill's axis in TRACKS.csv; not given: by the balls it carries");
+  verb->add_option("--metres-per-pixel", o->film.metres_per_pixel,
+                   "Scale of TRACKS.csv; not given: by the mill's diameter, else by the balls' radii");
   add_common(*verb, *o);
   verb->footer("Example: tumble analyse film.mp4 --mill mill.toml -o motion.h5 --csv results");
   verb->callback([o] { analyse(*o); });

@@ -36,7 +36,7 @@ void fill(Experiment& e, const Config& mill, const CommonOptions& options, std::
     if (e.film.empty()) {
       motion = io::read_motion(e.motion);
     } else {
-      analysis::FilmOptions film;
+      analysis::TracksOptions film;
       film.mill = &mill;
       motion = measure(e.film, film, options);
     }

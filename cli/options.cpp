@@ -28,6 +28,15 @@ void parse_size(const std::string& text, const std::string& option, int& width, 
     throw InputError(option, "is " + text + "; give even numbers from 160x120 to 7680x4320");
 }
 
+void parse_point(const std::string& text, const std::string& option, double& u, double& v) {
+  const char* const end = text.data() + text.size();
+  const auto first = std::from_chars(text.data(), end, u);
+  const bool two = first.ec == std::errc() && first.ptr != end && *first.ptr == ',';
+  const auto second = two ? std::from_chars(first.ptr + 1, end, v) : first;
+  if (!two || second.ec != std::errc() || second.ptr != end || !std::isfinite(u) || !std::isfinite(v))
+    throw InputError(option, "is \"" + text + "\"; give u,v in pixels, such as 640.5,360");
+}
+
 void parse_rate(double fps, const std::string& option, int& numerator, int& denominator) {
   if (!(fps >= 1 && fps <= 1000)) throw InputError(option, "must lie between 1 and 1000 frames per second");
   const double ntsc = fps * 1001 / 1000;

@@ -23,6 +23,9 @@ void add_common(CLI::App& verb, CommonOptions& options);
 // "1280x720" -> width and height; throws InputError naming `option`.
 void parse_size(const std::string& text, const std::string& option, int& width, int& height);
 
+// "640.5,360" -> u and v; throws InputError naming `option`.
+void parse_point(const std::string& text, const std::string& option, double& u, double& v);
+
 // "59.94" -> 60000/1001, "60" -> 60/1, "12.5" -> 25/2: the rates that films have; throws InputError.
 void parse_rate(double fps, const std::string& option, int& numerator, int& denominator);
 

@@ -63,7 +63,7 @@ void run(Options o) {
   drawing.mill.critical_speed_rpm = config.mill.critical_speed_rpm;
   drawing.mill.lifters = config.mill.lifters;
   drawing.charge.balls = config.charge.balls;
-  analysis::FilmOptions film_options;
+  analysis::TracksOptions film_options;
   film_options.mill = &drawing;
   const ChargeMotion film = measure(film_file, film_options, o);
   for (const std::string& caveat : film.caveats) say(o, "note: " + caveat);

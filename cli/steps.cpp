@@ -15,6 +15,7 @@
 #include "core/parallel_for.h"
 #include "io/image_file.h"
 #include "io/output.h"
+#include "io/tracks_file.h"
 
 namespace tumble::cli {
 namespace {
@@ -163,13 +164,15 @@ std::size_t render_run(const io::RunReader& run, const ChargeMotion& truth, cons
   return count;
 }
 
-ChargeMotion measure(const fs::path& input, const analysis::FilmOptions& film, const CommonOptions& options) {
+ChargeMotion measure(const fs::path& input, const analysis::TracksOptions& film, const CommonOptions& options) {
   std::error_code error;
   if (!fs::exists(input, error))
     throw InputError(input.string(), "does not exist; give a film, a folder or a run file");
   ChargeMotion motion;
   if (looks_like_hdf5(input)) {
     motion = measure_run(io::RunReader(input), options);
+  } else if (input.extension() == ".csv") {
+    motion = analysis::measure_tracks(io::read_pixel_tracks(input), film);
   } else {
     ProgressLine line(options, "reading the film", "nothing was written");
     motion = fs::is_directory(input, error) ? analysis::measure_stills(input.string(), film, line.callback())

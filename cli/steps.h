@@ -32,7 +32,8 @@ std::string picture_name(std::size_t index);
 std::size_t render_run(const io::RunReader& run, const ChargeMotion& truth, const FilmPlan& plan,
                        const fs::path& output, bool as_pictures, const CommonOptions& options);
 
-// The one door for all inputs: run file, folder of stills, film.
-ChargeMotion measure(const fs::path& input, const analysis::FilmOptions& film, const CommonOptions& options);
+// The one door for all inputs: run file, folder of stills, film, tracks in pixels (.csv). What only tracks need is not
+// looked at for others.
+ChargeMotion measure(const fs::path& input, const analysis::TracksOptions& film, const CommonOptions& options);
 
 }  // namespace tumble::cli

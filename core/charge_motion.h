@@ -11,7 +11,7 @@
 namespace tumble {
 
 enum class Rotation { kUnknown, kCounterClockwise, kClockwise };  // as seen by the camera, before mirroring
-enum class MotionSource { kRunFile, kFilm, kStills };
+enum class MotionSource { kRunFile, kFilm, kStills, kTracks };
 
 inline const char* name_of(Rotation rotation) {
   switch (rotation) {
@@ -31,6 +31,8 @@ inline const char* name_of(MotionSource source) {
       return "run_file";
     case MotionSource::kFilm:
       return "film";
+    case MotionSource::kTracks:
+      return "tracks";
     case MotionSource::kStills:
       break;
   }

@@ -31,7 +31,8 @@ struct Column {
 // `io` is a Writer or a Reader, `m` the ChargeMotion.
 template <typename Io, typename Motion>
 void walk(Io& io, Motion& m) {
-  io.choice("source", m.source, {MotionSource::kRunFile, MotionSource::kFilm, MotionSource::kStills});
+  io.choice("source", m.source,
+            {MotionSource::kRunFile, MotionSource::kFilm, MotionSource::kStills, MotionSource::kTracks});
   io.choice("rotation", m.rotation, {Rotation::kUnknown, Rotation::kCounterClockwise, Rotation::kClockwise});
   io.text("origin", m.origin);
   io.lines("caveats", m.caveats);

@@ -109,6 +109,12 @@ for verb in "render FILE -o film.mp4" "analyse FILE -o motion.h5"; do
 done
 refused 2 'text.h5' film.mp4 "$tumble" render text.h5 -o film.mp4
 refused 2 'run file\|folder\|directory' film.mp4 "$tumble" render . -o film.mp4
+printf 'track,frame,x_px,y_px,r_px\n1,0,100,far,8\n' >far.csv
+refused 2 'far.csv:2:9: y_px is "far"' motion.h5 "$tumble" analyse far.csv -o motion.h5
+printf 'track,frame,x_px,y_px,r_px\n1,0,100,100,8\n1,1,101,100,8\n' >short.csv
+refused 2 'short.csv: the mill.s axis cannot be told' motion.h5 "$tumble" analyse short.csv -o motion.h5
+refused 2 '--centre-px: is "640"; give u,v' motion.h5 "$tumble" analyse short.csv -o motion.h5 --centre-px 640
+refused 2 '--metres-per-pixel: must be' motion.h5 "$tumble" analyse short.csv -o motion.h5 --metres-per-pixel 0
 refused 2 'text.mp4' motion.h5 "$tumble" analyse text.mp4 -o motion.h5
 refused 2 'empty.mp4' motion.h5 "$tumble" analyse empty.mp4 -o motion.h5
 mkdir stills
