@@ -14,7 +14,7 @@ namespace tumble::analysis {
 namespace {
 
 constexpr int kStride = 4, kFine = 16, kWidth = 32, kMaps = 7, kSubcells = 4;
-constexpr int kJoined = 32;  // fine and coarse maps together: 24, filled up with zeros, for vectors hold 16
+constexpr int kSpread = 64, kJoined = kFine + kSpread / kSubcells;
 enum Map { kHeat, kAlongU, kAlongV, kLogRadius, kVisible, kLogDeviation, kCover };
 
 double sigmoid(double x) { return 1 / (1 + std::exp(-x)); }
@@ -29,23 +29,23 @@ struct Layers {
     const auto fine = net.convolve(input, {kFine, 5, 2});
     auto x = net.convolve(fine, {kWidth, 3, 2});
     for (const int dilation : {1, 2, 1, 2}) net.add_convolved(net.convolve(x, {kWidth, 3, 1, dilation}), x, {kWidth});
-    x = net.convolve(x, {kWidth, 1});
+    x = net.convolve(x, {kSpread, 1});
     const int h2 = height / 2, w2 = width / 2;
     const auto fine_maps = net.copy(fine, net.plain({1, kFine, h2, w2}));
-    const auto coarse_maps = net.copy(x, net.plain({1, kWidth, h2 / 2, w2 / 2}));
+    const auto coarse_maps = net.copy(x, net.plain({1, kSpread, h2 / 2, w2 / 2}));
     const auto both = net.plain({1, kJoined, h2, w2});
     net.call(
         [=] { spread(ConvNet::data_of(fine_maps), ConvNet::data_of(coarse_maps), h2, w2, ConvNet::data_of(both)); });
-    x = net.convolve(net.convolve(both, {kJoined}), {.channels = kMaps, .size = 1, .rectify = false});
+    x = net.convolve(net.convolve(both, {kFine}), {.channels = kMaps, .size = 1, .rectify = false});
     output = net.copy(x, net.plain({1, kMaps, h2, w2}));
     net.check_complete();
   }
 
-  // The coarse maps in fours onto the fine grid, behind the fine ones; what lies behind them stays zero.
+  // The coarse maps in fours onto the fine grid, behind the fine ones.
   static void spread(const float* fine, const float* coarse, int height, int width, float* both) {
     const auto h = static_cast<std::size_t>(height), w = static_cast<std::size_t>(width);
     float* to = std::copy_n(fine, kFine * h * w, both);
-    for (std::size_t map = 0; map < kWidth / kSubcells; ++map)
+    for (std::size_t map = 0; map < kSpread / kSubcells; ++map)
       for (std::size_t s = 0; s < kSubcells; ++s)
         for (std::size_t i = 0; i < h / 2; ++i) {
           float* row = to + (map * h + 2 * i + s / 2) * w + s % 2;

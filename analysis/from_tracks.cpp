@@ -156,7 +156,7 @@ ChargeMotion measure_tracks(const PixelTracks& tracks, const TracksOptions& opti
   }
   motion.caveats.push_back("filling, toe, shoulder and occupancy are those of the balls that the tracks hold");
 
-  std::vector<std::vector<Sighting>> frames(static_cast<std::size_t>(motion.frames));
+  std::vector<SeenFrame> frames(static_cast<std::size_t>(motion.frames));
   std::vector<std::vector<const PixelSighting*>> from(frames.size());
   for (const PixelSighting& s : sightings) {
     const double x = s.u - shell.centre.u, y = shell.centre.v - s.v;
@@ -165,11 +165,11 @@ ChargeMotion measure_tracks(const PixelTracks& tracks, const TracksOptions& opti
     ball.y = y * std::cos(roll) - x * std::sin(roll);
     ball.radius = s.radius;
     ball.track = s.track;
-    frames[static_cast<std::size_t>(s.frame)].push_back(ball);
+    ball.time = s.frame;
+    frames[static_cast<std::size_t>(s.frame)].balls.push_back(ball);
     from[static_cast<std::size_t>(s.frame)].push_back(&s);
   }
-  smooth_velocities(frames,
-                    std::isnan(fps) ? 5 : std::clamp(2 * static_cast<int>(std::lround(0.0125 * fps)) + 1, 3, 21));
+  smooth_velocities(frames, std::isnan(fps) ? 4.0 : std::clamp(0.025 * fps, 2.0, 20.0));
 
   MillGeometry geometry;
   geometry.radius = motion.camera.radius_px * unit;
@@ -184,8 +184,8 @@ ChargeMotion measure_tracks(const PixelTracks& tracks, const TracksOptions& opti
   for (std::size_t f = 0; f < frames.size(); ++f) {
     std::vector<TrackPoint> balls;
     double area = 0;
-    for (std::size_t k = 0; k < frames[f].size(); ++k) {
-      const Sighting& s = frames[f][k];
+    for (std::size_t k = 0; k < frames[f].balls.size(); ++k) {
+      const Sighting& s = frames[f].balls[k];
       TrackPoint p;
       p.frame = static_cast<int>(f);
       p.id = s.track;
