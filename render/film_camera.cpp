@@ -13,6 +13,7 @@
 #include "render/film_crowd.h"
 #include "render/film_develop.h"
 #include "render/film_lens.h"
+#include "render/film_parts.h"
 #include "render/film_shaders.h"
 #include "render/film_sheets.h"
 #include "render/offscreen_context.h"
@@ -146,7 +147,7 @@ struct FilmCamera::Impl {
   Impl();
   void make_buffers();
   void set_common(const Pipeline& pipeline) const;
-  void set_drum() const;
+  void set_drum(const Pipeline& part) const;
   void set_balls() const;
   std::vector<SeenBall> see(const FilmMoment& moment) const;
   void place(const std::vector<SeenBall>& seen, double exposure);
@@ -155,7 +156,7 @@ struct FilmCamera::Impl {
   MillPlace place_in_picture() const;
 
   OffscreenContext context{64, 64};
-  Pipeline drum, balls, shadows, sum;
+  Pipeline behind, flange, plate, wall, balls, shadows, sum;
   GLuint noise = 0, outline = 0, decals = 0, room = 0, on_glass = 0;
   GLuint picture = 0, numbers = 0, depth = 0, summed = 0, shot_buffer = 0, sum_buffer = 0;
   int width = 0, height = 0;
@@ -166,6 +167,7 @@ struct FilmCamera::Impl {
   std::vector<BallDress> dresses;
   StillSheets still;
   OutlineTable table;
+  DrumParts parts;
   float gain = 0;  // 0: to be found with the next picture
   bool has_glass = false;
   std::vector<BallInstance> ball_instances;
@@ -178,10 +180,18 @@ FilmCamera::Impl::Impl() {
   const auto program = [](const char* vertex, const char* fragment) {
     return make_pipeline(vertex, (std::string(film::kCommon) + fragment).c_str(), 64, 64);
   };
-  drum = program(film::kDrumVertex, film::kDrumFragment);
+  const auto drum_part = [&](const char* fragment) {
+    const Pipeline p = program(film::kPartVertex, (std::string(film::kDrumCommon) + fragment).c_str());
+    set_attribute(p, 0, 2, GL_FLOAT, false, 2 * sizeof(float), 0);
+    return p;
+  };
+  behind = program(film::kWholeVertex, film::kRoomFragment);
+  flange = drum_part(film::kFlangeFragment);
+  plate = drum_part(film::kPlateFragment);
+  wall = drum_part(film::kWallFragment);
   balls = program(film::kBallVertex, film::kBallFragment);
   shadows = program(film::kShadowVertex, film::kShadowFragment);
-  sum = program(film::kDrumVertex, film::kSumFragment);
+  sum = program(film::kWholeVertex, film::kSumFragment);
   for (GLuint k = 0; k < 7; ++k)
     set_attribute(balls, k, 4, GL_FLOAT, false, sizeof(BallInstance), k * 4 * sizeof(float), 1);
   for (GLuint k = 0; k < 3; ++k)
@@ -235,6 +245,7 @@ void FilmCamera::Impl::set_common(const Pipeline& pipeline) const {
     u.set(indexed("lamp_towards", k).c_str(), lamp.towards.x(), lamp.towards.y(), lamp.towards.z());
     u.set(indexed("lamp_colour", k).c_str(), lit ? lamp.colour : Light(0, 0, 0));
   }
+  u.set("lamp_count", std::min(2, static_cast<int>(look.lamps.size())));
   u.set("lamp_size", look.lamps.front().size, look.lamps.back().size);
   u.set("above", look.ambient_above);
   u.set("below", look.ambient_below);
@@ -242,16 +253,18 @@ void FilmCamera::Impl::set_common(const Pipeline& pipeline) const {
   u.set("mirror", scene.clockwise ? -1.0 : 1.0);
 }
 
-void FilmCamera::Impl::set_drum() const {
-  set_common(drum);
-  const Uniforms u{drum.program};
+void FilmCamera::Impl::set_drum(const Pipeline& part) const {
+  set_common(part);
+  const Uniforms u{part.program};
+  const double deep = scene.length / scene.shape.radius;
   u.set("outline", static_cast<int>(kOutline));
   u.set("decals", static_cast<int>(kDecals));
-  u.set("room", static_cast<int>(kRoom));
   u.set("outline_span", table.begin, table.end, table.tip, table.columns > 0 ? 1.0 : 0.0);
-  const FlangeLook& flange = look.flange;
-  u.set("flange_size", flange.inner, flange.outer, flange.thick, flange.there ? 1.0 : 0.0);
-  const std::array<const Surface*, 3> faces = {&flange.surface, &look.plate.surface, &look.liner};
+  u.set("tip", table.tip);
+  u.set("at_depth", (0.4 + deep) / (0.8 + deep));  // as kCommon's depth_of
+  const FlangeLook& rim = look.flange;
+  u.set("flange_size", rim.inner, rim.outer, rim.there ? rim.thick : 0.0, rim.there ? 1.0 : 0.0);
+  const std::array<const Surface*, 3> faces = {&rim.surface, &look.plate.surface, &look.liner};
   for (int k = 0; k < 3; ++k) {
     const Surface& s = *faces[k];
     u.set(indexed("surface_colour", k).c_str(), s.colour);
@@ -397,7 +410,9 @@ void FilmCamera::Impl::shoot(const FilmMoment& moment, int count, std::vector<fl
   last.set("share", 1.0 / count);
   set_common(shadows);
   set_balls();
-  set_drum();
+  set_common(behind);
+  Uniforms{behind.program}.set("room", static_cast<int>(kRoom));
+  for (const Pipeline* part : {&flange, &plate, &wall}) set_drum(*part);
 
   const double deep = scene.length / scene.shape.radius;
   const double first = Random(look.seed + 77).uniform();
@@ -418,14 +433,24 @@ void FilmCamera::Impl::shoot(const FilmMoment& moment, int count, std::vector<fl
     const std::array<GLenum, 2> both = {GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1};
     glBindFramebuffer(GL_FRAMEBUFFER, shot_buffer);
     glDrawBuffers(2, both.data());
-    glEnable(GL_DEPTH_TEST);
-    glDepthFunc(GL_ALWAYS);
-    glDepthMask(GL_TRUE);
     glDisable(GL_BLEND);
-    begin(drum).set("turning", moment.mill_angle, moment.mill_speed);
+    glDepthMask(GL_TRUE);
+    glClear(GL_DEPTH_BUFFER_BIT);
+    glDisable(GL_DEPTH_TEST);
+    begin(behind);
     glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
 
+    // The plate after the balls: it has a depth of its own, so that what they hide costs nothing.
+    glEnable(GL_DEPTH_TEST);
     glDepthFunc(GL_LEQUAL);
+    begin(balls);
+    glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, static_cast<GLsizei>(ball_instances.size()));
+    for (const auto& [part, corners] :
+         {std::pair{&flange, parts.flange.size() / 2}, std::pair{&plate, parts.plate.size() / 2},
+          std::pair{&wall, parts.wall.size() / 2}}) {
+      begin(*part).set("turning", moment.mill_angle, moment.mill_speed);
+      glDrawArrays(GL_TRIANGLES, 0, static_cast<GLsizei>(corners));
+    }
     glDepthMask(GL_FALSE);
     glEnablei(GL_BLEND, 0);
     glBlendFunc(GL_ZERO, GL_ONE_MINUS_SRC_ALPHA);
@@ -433,8 +458,6 @@ void FilmCamera::Impl::shoot(const FilmMoment& moment, int count, std::vector<fl
     glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, static_cast<GLsizei>(shadow_instances.size()));
     glDisablei(GL_BLEND, 0);
     glDepthMask(GL_TRUE);
-    begin(balls);
-    glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, static_cast<GLsizei>(ball_instances.size()));
 
     glReadBuffer(GL_COLOR_ATTACHMENT1);
     glPixelStorei(GL_PACK_ALIGNMENT, 1);
@@ -475,6 +498,15 @@ void FilmCamera::aim(const FilmLook& look, const FilmScene& scene) {
   my.table = make_outline_table(scene.shape);
   if (my.table.columns > 0)
     fill_texture(my.outline, GL_R32F, GL_RED, my.table.columns, my.table.rows, my.table.distance.data());
+  my.parts = drum_parts(my.pinhole, look.flange, my.table.tip, scene.length / scene.shape.radius);
+  const auto upload = [](const Pipeline& part, const std::vector<float>& corners) {
+    glBindBuffer(GL_ARRAY_BUFFER, part.buffer);
+    glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(corners.size() * sizeof(float)), corners.data(),
+                 GL_STATIC_DRAW);
+  };
+  upload(my.flange, my.parts.flange);
+  upload(my.plate, my.parts.plate);
+  upload(my.wall, my.parts.wall);
   const MillPlace place = my.place_in_picture();
   double mean_radius = 0;
   for (const double r : scene.radius) mean_radius += r / (scene.shape.radius * double(scene.radius.size()));

@@ -4,7 +4,7 @@
 // picture's middle row. Colour attachment 0 is linear light with the balls' coverage in alpha, 1 the ball's number + 1.
 namespace tumble::render::film {
 
-inline constexpr const char* kDrumVertex = R"(
+inline constexpr const char* kWholeVertex = R"(
 void main() {
   vec2 corner = vec2(gl_VertexID & 1, gl_VertexID >> 1) * 2.0 - 1.0;
   gl_Position = vec4(corner, 0.0, 1.0);
@@ -22,6 +22,7 @@ uniform vec3 clock;            // of this sub-exposure [s]; readout [s]; depth o
 uniform vec3 lamp_towards[2];
 uniform vec3 lamp_colour[2];
 uniform vec2 lamp_size;
+uniform int lamp_count;
 uniform vec3 above, below;     // ambient light
 uniform sampler2D noise;
 
@@ -42,15 +43,31 @@ vec3 ray_of(vec2 pixel) {
 float depth_of(float z) { return (0.4 - z) / (0.8 + clock.z); }
 )";
 
-// The turning drum, ray-cast: flange, end faces, shell with lifters, back plate; where nothing is, the room behind.
-// The shell's inside is an extrusion, so a ray is followed in the plane, through the table of distances to its outline.
-inline constexpr const char* kDrumFragment = R"(
-uniform sampler2D outline;     // distance to the outline over (angle, radius), > 0 inside
-uniform vec4 outline_span;     // radii where the table begins and ends; tip radius; 1 = there are lifters
+// The room behind, which stands still.
+inline constexpr const char* kRoomFragment = R"(
+uniform sampler2D room;
+layout(location = 0) out vec4 light;
+layout(location = 1) out float number;
+void main() {
+  number = 0.0;
+  light = vec4(texture(room, (gl_FragCoord.xy + vec2(jitter.x, -jitter.y)) / image_size).rgb, 0.0);
+})";
+
+// Rings and discs of the picture where a part of the drum may be seen; their fragments decide.
+inline constexpr const char* kPartVertex = R"(
+layout(location = 0) in vec2 place;   // [px]
+uniform float at_depth;
+void main() {
+  gl_Position = clip_from_image(place);
+  gl_Position.z = at_depth * 2.0 - 1.0;
+})";
+
+// What the parts of the drum share: turning, dirt, light. llvmpipe runs both sides of every branch, so each part has a
+// program of its own.
+inline constexpr const char* kDrumCommon = R"(
 uniform vec2 turning;          // mill angle in the middle [rad], speed [rad/s], as simulated
 uniform float mirror;          // -1: the mill turns clockwise
 uniform sampler2D decals;      // over the mill's own frame from -1.5 to 1.5
-uniform sampler2D room;
 uniform vec4 flange_size;      // inner, outer radius, thickness; 1 = there is one
 uniform vec3 surface_colour[3];
 uniform vec4 surface_finish[3];   // gloss, exponent, brushed, blotches
@@ -60,18 +77,15 @@ uniform vec4 seeds;
 layout(location = 0) out vec4 light;
 layout(location = 1) out float number;
 
-float distance_at(vec2 p) {
-  float rho = length(p);
-  if (outline_span.w < 0.5) return 1.0 - rho;
-  if (rho < outline_span.x) return outline_span.z - rho;
-  float angle = atan(p.y, p.x) * 0.15915494;
-  return texture(outline, vec2(angle, (rho - outline_span.x) / (outline_span.y - outline_span.x))).r;
+// Into the mill's own frame: first as simulated, then turned back.
+mat2 own_from_mill(float row) {
+  float angle = turning.x + turning.y * row_time(row), c = cos(angle), s = sin(angle);
+  return mat2(c * mirror, -s * mirror, s, c);
 }
 
 // A face's own colour where it is dirty, scratched and rusty; q in the mill's own frame.
 vec3 face_colour(int kind, vec2 q, float streak) {
   vec4 finish = surface_finish[kind];
-  float rho = length(q);
   vec4 coarse = texture(noise, q * 0.21 + seeds.xy + float(kind) * 0.37);
   vec4 fine = texture(noise, q * 1.9 + seeds.zw);
   float scratch = texture(noise, vec2(streak * 2.7 + coarse.g * 0.02, seeds.x)).b - 0.5;
@@ -88,116 +102,131 @@ vec3 face_colour(int kind, vec2 q, float streak) {
 vec3 lit(int kind, vec3 base, vec3 n, vec3 along, vec3 d, vec2 shade) {
   vec4 finish = surface_finish[kind];
   vec3 c = base * mix(below, above, 0.5 + 0.5 * n.y);
-  for (int i = 0; i < 2; ++i) {
+  for (int i = 0; i < lamp_count; ++i) {
     vec3 l = lamp_towards[i];
     float s = shade[i];
     vec3 h = normalize(l - d);
-    float across = 1.0 - dot(h, along) * dot(h, along);
-    float glint = pow(max(mix(dot(h, n) * dot(h, n), across * across, 0.75 * finish.z), 0.0), finish.y);
+    float hn = dot(h, n), ha = dot(h, along), across = 1.0 - ha * ha;
+    float glint = pow(max(mix(hn * hn, across * across, 0.75 * finish.z), 0.0), finish.y);
     c += lamp_colour[i] * s * (base * max(dot(n, l), 0.0) + finish.x * glint * (0.35 + 0.65 * base));
   }
   return c;
 }
 
+// How much of the lamps the rim in front leaves a point: soft shadows by the lamps' sizes.
+vec2 rim_shade(vec3 where) {
+  vec2 shade = vec2(1.0);
+  float bore = flange_size.w > 0.5 ? flange_size.x : 1.02;
+  for (int i = 0; i < lamp_count; ++i) {
+    vec3 l = lamp_towards[i];
+    float rise = flange_size.z - where.z;
+    vec2 top = where.xy + l.xy / max(l.z, 0.05) * rise;
+    shade[i] = smoothstep(-1.0, 1.0, (bore - length(top)) / (0.02 + lamp_size[i] * (rise + 0.05)));
+  }
+  return shade;
+}
+
+// The back plate at a point, `reach` from the shell's outline.
+vec3 plate_light(vec2 where, vec2 q, float reach, vec3 unit) {
+  float depth = clock.z, rho = length(where);
+  vec4 decal = texture(decals, q / 3.0 + 0.5);
+  vec3 base = face_colour(1, q, rho) * (1.0 - decal.a) + decal.rgb;
+  vec3 along = vec3(-where.y, where.x, 0.0) / max(rho, 1e-3);
+  float nook = mix(0.35, 1.0, smoothstep(-0.02, 0.5 * depth + 0.05, reach));
+  return lit(1, base, vec3(0.0, 0.0, 1.0), along, unit, rim_shade(vec3(where, -depth))) * nook;
+}
+)";
+
+inline constexpr const char* kFlangeFragment = R"(
 void main() {
   vec2 pixel = pixel_here();
   vec3 d = ray_of(pixel);
-  float t = row_time(pixel.y);
-  float angle = turning.x + turning.y * t;
-  float ca = cos(angle), sa = sin(angle);
-  // Into the mill's own frame: first as simulated, then turned back.
-  mat2 own = mat2(ca, -sa, sa, ca);
-  number = 0.0;
-  light = vec4(0.0);
-  gl_FragDepth = 1.0;
   vec3 unit = normalize(d);
   vec2 slope = d.xy / max(-d.z, 1e-3);
-  vec2 room_at = (gl_FragCoord.xy + vec2(jitter.x, -jitter.y)) / image_size;
-
   float face = flange_size.z;
-  vec2 at = eye.xy + slope * (eye.z - face);
+  vec2 at = eye.xy + slope * (eye.z - face), inside = eye.xy + slope * eye.z;
   float rho = length(at);
-  if (flange_size.w > 0.5 && rho > flange_size.x) {
-    if (rho > flange_size.y) {
-      light.rgb = texture(room, room_at).rgb;
-      return;
-    }
-    vec2 q = own * vec2(at.x * mirror, at.y);
-    vec4 decal = texture(decals, q / 3.0 + 0.5);
-    vec3 base = mix(face_colour(0, q, rho), vec3(0.0), 0.0) * (1.0 - decal.a) + decal.rgb;
-    float edge = min(rho - flange_size.x, flange_size.y - rho);
-    base *= 0.72 + 0.28 * smoothstep(0.0, 0.012, edge);
-    vec3 along = vec3(-at.y, at.x, 0.0) / rho;
-    light.rgb = lit(0, base, vec3(0.0, 0.0, 1.0), along, unit, vec2(1.0));
-    gl_FragDepth = depth_of(face);
-    return;
-  }
-  at = eye.xy + slope * eye.z;  // on the inside of the glass
-  rho = length(at);
-  if (flange_size.w > 0.5 && rho > flange_size.x) {  // the flange's bore
-    vec2 q = own * vec2(at.x * mirror, at.y);
-    vec3 n = vec3(-at / rho, 0.0);
-    light.rgb = lit(0, face_colour(0, q, rho * 3.0) * 0.6, n, vec3(0.0, 0.0, 1.0), unit, vec2(0.7));
-    gl_FragDepth = depth_of(face * 0.5);
-    return;
-  }
-  if (flange_size.w < 0.5 && rho > 1.04) {
-    light.rgb = texture(room, room_at).rgb;
-    return;
-  }
-  vec2 p = own * vec2(at.x * mirror, at.y);
-  vec2 step_in_own = own * vec2(slope.x * mirror, slope.y);
-  float run = length(slope), depth = clock.z;
-  float gap = outline_span.z - max(length(p), length(p + step_in_own * depth));
-  float s = depth;
-  bool wall = false;
-  if (gap < 0.0) {
-    float here = distance_at(p);
-    if (here < 0.0) {  // the end face of a lifter or of the shell, against the glass
-      vec3 base = face_colour(2, p, length(p)) * 0.8;
-      light.rgb = lit(2, base, vec3(0.0, 0.0, 1.0), vec3(-at.y, at.x, 0.0) / rho, unit, vec2(0.75));
-      gl_FragDepth = depth_of(0.0);
-      return;
-    }
-    s = 0.0;
+  bool bore = rho <= flange_size.x;
+  if (rho > flange_size.y || (bore && length(inside) <= flange_size.x)) discard;
+  number = 0.0;
+  if (bore) at = inside;
+  vec2 q = own_from_mill(pixel.y) * at;
+  vec4 decal = bore ? vec4(0.0) : texture(decals, q / 3.0 + 0.5);
+  vec3 base = face_colour(0, q, rho) * (1.0 - decal.a) + decal.rgb;
+  float edge = min(rho - flange_size.x, flange_size.y - rho);
+  base *= bore ? 0.6 : 0.72 + 0.28 * smoothstep(0.0, 0.012, edge);
+  vec3 n = bore ? vec3(-at / max(rho, 1e-3), 0.0) : vec3(0.0, 0.0, 1.0);
+  light = vec4(lit(0, base, n, vec3(-at.y, at.x, 0.0) / max(rho, 1e-3), unit, vec2(bore ? 0.7 : 1.0)), 0.0);
+  gl_FragDepth = depth_of(bore ? 0.5 * face : face);
+})";
+
+// The middle of the back plate, where no lifter comes between. Its depth is the quad's, so that what balls hide is
+// never shaded.
+inline constexpr const char* kPlateFragment = R"(
+uniform float tip;
+void main() {
+  vec2 pixel = pixel_here();
+  vec3 d = ray_of(pixel);
+  vec2 at = eye.xy + d.xy / max(-d.z, 1e-3) * (eye.z + clock.z);
+  number = 0.0;
+  light = vec4(plate_light(at, own_from_mill(pixel.y) * at, tip - length(at), normalize(d)), 0.0);
+})";
+
+// Everything near the shell, ray-cast. The shell's inside is an extrusion, so a ray is followed in the plane, through
+// the table of distances to its outline.
+inline constexpr const char* kWallFragment = R"(
+uniform sampler2D outline;     // distance to the outline over (angle, radius), > 0 inside
+uniform vec4 outline_span;     // radii where the table begins and ends; tip radius; 1 = there are lifters
+
+float distance_at(vec2 p) {
+  float rho = length(p);
+  float angle = atan(p.y, p.x) * 0.15915494;
+  float found = texture(outline, vec2(angle, (rho - outline_span.x) / (outline_span.y - outline_span.x))).r;
+  return outline_span.w < 0.5 ? 1.0 - rho : rho < outline_span.x ? outline_span.z - rho : found;
+}
+
+void main() {
+  vec2 pixel = pixel_here();
+  vec3 d = ray_of(pixel);
+  vec3 unit = normalize(d);
+  vec2 slope = d.xy / max(-d.z, 1e-3);
+  vec2 at = eye.xy + slope * eye.z;  // on the inside of the glass
+  vec2 front = eye.xy + slope * (eye.z - flange_size.z);
+  float rho = length(at);
+  if (flange_size.w > 0.5 ? max(rho, length(front)) > flange_size.x : rho > 1.04) discard;
+  mat2 own = own_from_mill(pixel.y);
+  vec2 p = own * at, way = own * slope;
+  float run = max(length(slope), 1e-4), depth = clock.z, s = 0.0;
+  float here = distance_at(p);
+  bool end_face = here < 0.0, wall = false;
+  if (!end_face) {
     for (int i = 0; i < 24; ++i) {
-      s += max(here, 0.0015) / max(run, 1e-4);
+      s += max(here, 0.0015) / run;
       if (s >= depth) break;
-      here = distance_at(p + step_in_own * s);
+      here = distance_at(p + way * s);
       if (here < 0.001) { wall = true; break; }
     }
     s = min(s, depth);
   }
-  vec2 q = p + step_in_own * s;
-  float reach = distance_at(q);
-  // How much of a lamp the rim before it hides: a soft shadow by the lamp's size.
-  vec2 shade;
-  for (int i = 0; i < 2; ++i) {
-    vec3 l = lamp_towards[i];
-    vec2 top = at + slope * s + l.xy / max(l.z, 0.05) * (s + face);
-    float bore = flange_size.w > 0.5 ? flange_size.x : 1.02;
-    shade[i] = smoothstep(-1.0, 1.0, (bore - length(top)) / (0.02 + lamp_size[i] * (s + 0.05)));
-  }
+  vec2 q = p + way * s;
   vec2 where = at + slope * s;
-  if (wall) {
+  number = 0.0;
+  if (end_face || wall) {
+    // The end face of a lifter or of the shell against the glass, or the shell's inside.
     float e = 0.004;
     vec2 g = vec2(distance_at(q + vec2(e, 0.0)) - distance_at(q - vec2(e, 0.0)),
                   distance_at(q + vec2(0.0, e)) - distance_at(q - vec2(0.0, e)));
     vec2 n = normalize(g * own + vec2(1e-6, 0.0));  // g * own: turned back
-    n.x *= mirror;
-    float worn = s * 1.3;
-    vec3 base = face_colour(2, q * (1.0 + 0.3 * s), worn);
-    vec3 c = lit(2, base, vec3(n, 0.0), vec3(0.0, 0.0, 1.0), unit, shade);
-    light.rgb = c * mix(1.0, 0.45, s / depth);
+    vec3 normal = end_face ? vec3(0.0, 0.0, 1.0) : vec3(n, 0.0);
+    vec3 along = end_face ? vec3(-at.y, at.x, 0.0) / rho : vec3(0.0, 0.0, 1.0);
+    vec3 base = face_colour(2, end_face ? p : q * (1.0 + 0.3 * s), end_face ? rho : s * 1.3);
+    vec2 shade = end_face ? vec2(0.75) : rim_shade(vec3(where, -s));
+    light = vec4(lit(2, base, normal, along, unit, shade) * mix(end_face ? 0.8 : 1.0, 0.45, s / depth), 0.0);
     gl_FragDepth = depth_of(-s);
-    return;
+  } else {
+    light = vec4(plate_light(where, q, distance_at(q), unit), 0.0);
+    gl_FragDepth = depth_of(-depth);
   }
-  vec4 decal = texture(decals, q / 3.0 + 0.5);
-  vec3 base = face_colour(1, q, length(q)) * (1.0 - decal.a) + decal.rgb;
-  vec3 along = vec3(-where.y, where.x, 0.0) / max(length(where), 1e-3);
-  float nook = mix(0.35, 1.0, smoothstep(-0.02, 0.5 * depth + 0.05, reach));
-  light.rgb = lit(1, base, vec3(0.0, 0.0, 1.0), along, unit, shade) * nook;
-  gl_FragDepth = depth_of(-depth);
 })";
 
 // A quad that holds a ball's picture during the whole exposure.
@@ -287,7 +316,7 @@ void main() {
   float open = smoothstep(0.1, 0.75, seen.z);
   vec3 mirrored = mix(surroundings * (0.4 + 1.2 * murk), mix(below, above, smoothstep(-0.35, 0.45, seen.y + 0.5 * (murk - 0.5))), open);
   vec3 c = base * ambient * (1.0 - 0.75 * metal) + base * mirrored * 1.5 * metal;
-  for (int i = 0; i < 2; ++i) {
+  for (int i = 0; i < lamp_count; ++i) {
     vec3 l = lamp_towards[i];
     float reach = chance_[2 + i], wrap = 0.5 * lamp_size[i];
     float diffuse = max((dot(n, l) + wrap) / (1.0 + wrap), 0.0);
