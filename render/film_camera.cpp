@@ -156,7 +156,7 @@ struct FilmCamera::Impl {
   MillPlace place_in_picture() const;
 
   OffscreenContext context{64, 64};
-  Pipeline behind, flange, plate, wall, balls, shadows, sum;
+  Pipeline behind, flange, plate, wall, balls, shadows, glass, sum;
   GLuint noise = 0, outline = 0, decals = 0, room = 0, on_glass = 0;
   GLuint picture = 0, numbers = 0, depth = 0, summed = 0, shot_buffer = 0, sum_buffer = 0;
   int width = 0, height = 0;
@@ -191,6 +191,8 @@ FilmCamera::Impl::Impl() {
   wall = drum_part(film::kWallFragment);
   balls = program(film::kBallVertex, film::kBallFragment);
   shadows = program(film::kShadowVertex, film::kShadowFragment);
+  glass = program(film::kPartVertex, film::kGlassFragment);
+  set_attribute(glass, 0, 2, GL_FLOAT, false, 2 * sizeof(float), 0);
   sum = program(film::kWholeVertex, film::kSumFragment);
   for (GLuint k = 0; k < 7; ++k)
     set_attribute(balls, k, 4, GL_FLOAT, false, sizeof(BallInstance), k * 4 * sizeof(float), 1);
@@ -356,9 +358,9 @@ void FilmCamera::Impl::place(const std::vector<SeenBall>& seen, double exposure)
                               {d.chance_x, d.chance_y, c.reach[0], c.reach[1]}});
     // A shadow on the back plate is deepest where the ball lies at it; far in front of it nothing is left.
     const double above_plate = p.centre.z() + deep;
-    if (above_plate > 6 * p.radius) continue;
+    if (above_plate > 3.5 * p.radius) continue;
     const Eigen::Vector3d at = p.centre - lamp * (above_plate / std::max(lamp.z(), 0.3));
-    const double soft = p.radius * 0.25 + above_plate * (0.25 + look.lamps.front().size);
+    const double soft = std::min(p.radius * 0.25 + above_plate * (0.2 + look.lamps.front().size), 1.2 * p.radius);
     const Eigen::Vector3d on_plate(at.x(), at.y(), -deep);
     const Eigen::Vector2d where = pinhole.image_from_mill(on_plate);
     const double reach = (p.radius + soft) * outer.radius / p.radius + stray;
@@ -405,12 +407,12 @@ void FilmCamera::Impl::shoot(const FilmMoment& moment, int count, std::vector<fl
   set_common(sum);
   const Uniforms last{sum.program};
   last.set("picture", static_cast<int>(kPicture));
-  last.set("on_glass", static_cast<int>(kGlass));
-  last.set("glass_there", has_glass ? 1.0 : 0.0);
   last.set("share", 1.0 / count);
-  set_common(shadows);
+  for (const Pipeline* pipeline : {&shadows, &behind, &glass}) set_common(*pipeline);
   set_balls();
-  set_common(behind);
+  glUseProgram(glass.program);
+  Uniforms{glass.program}.set("on_glass", static_cast<int>(kGlass));
+  glUseProgram(behind.program);
   Uniforms{behind.program}.set("room", static_cast<int>(kRoom));
   for (const Pipeline* part : {&flange, &plate, &wall}) set_drum(*part);
 
@@ -456,6 +458,14 @@ void FilmCamera::Impl::shoot(const FilmMoment& moment, int count, std::vector<fl
     glBlendFunc(GL_ZERO, GL_ONE_MINUS_SRC_ALPHA);
     begin(shadows);
     glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, static_cast<GLsizei>(shadow_instances.size()));
+    if (has_glass) {
+      glDisable(GL_DEPTH_TEST);
+      glColorMaski(1, GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+      glBlendFuncSeparate(GL_ONE, GL_ONE_MINUS_SRC_ALPHA, GL_ZERO, GL_ONE);
+      begin(glass).set("turning", moment.mill_angle, moment.mill_speed);
+      glDrawArrays(GL_TRIANGLES, 0, static_cast<GLsizei>((parts.plate.size() + parts.wall.size()) / 2));
+      glColorMaski(1, GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+    }
     glDisablei(GL_BLEND, 0);
     glDepthMask(GL_TRUE);
 
@@ -472,7 +482,7 @@ void FilmCamera::Impl::shoot(const FilmMoment& moment, int count, std::vector<fl
     glDisable(GL_DEPTH_TEST);
     glEnable(GL_BLEND);
     glBlendFunc(GL_ONE, GL_ONE);
-    begin(sum).set("turning", moment.mill_angle, moment.mill_speed);
+    begin(sum);
     glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
     glDisable(GL_BLEND);
   }
@@ -507,6 +517,9 @@ void FilmCamera::aim(const FilmLook& look, const FilmScene& scene) {
   upload(my.flange, my.parts.flange);
   upload(my.plate, my.parts.plate);
   upload(my.wall, my.parts.wall);
+  std::vector<float> whole = my.parts.plate;
+  whole.insert(whole.end(), my.parts.wall.begin(), my.parts.wall.end());
+  upload(my.glass, whole);
   const MillPlace place = my.place_in_picture();
   double mean_radius = 0;
   for (const double r : scene.radius) mean_radius += r / (scene.shape.radius * double(scene.radius.size()));

@@ -7,13 +7,6 @@
 #include "core/units.h"
 
 namespace tumble::render {
-namespace {
-
-// Rounds of the fixed point that undoes the distortion; the shaders make as many (film_shaders.h).
-constexpr int kUndistortions = 8;
-
-}  // namespace
-
 Pinhole make_pinhole(const FilmLens& lens) {
   const Eigen::Vector3d forward(std::sin(lens.yaw) * std::cos(lens.pitch), std::sin(lens.pitch),
                                 -std::cos(lens.yaw) * std::cos(lens.pitch));
@@ -42,11 +35,13 @@ Eigen::Vector2d Pinhole::image_from_mill(const Eigen::Vector3d& point) const {
 
 Eigen::Vector3d Pinhole::ray(double u, double v) const {
   const Eigen::Vector2d d((u - centre_u) / focal, (v - centre_v) / focal);
-  Eigen::Vector2d q = d;
-  for (int i = 0; i < kUndistortions; ++i) {
-    const double r2 = q.squaredNorm();
-    q = d / (1 + r2 * (k1 + k2 * r2));
+  const double bent = d.norm();
+  double r = bent;
+  for (int i = 0; i < 6; ++i) {
+    const double r2 = r * r;
+    r -= (r * (1 + r2 * (k1 + k2 * r2)) - bent) / (1 + r2 * (3 * k1 + 5 * k2 * r2));
   }
+  const Eigen::Vector2d q = d * (r / std::max(bent, 1e-12));
   return (camera_from_mill.transpose() * Eigen::Vector3d(q.x(), q.y(), 1)).normalized();
 }
 

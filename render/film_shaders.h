@@ -31,11 +31,13 @@ float row_time(float v) { return clock.x + clock.y * ((v + 0.5) / image_size.y -
 
 vec3 ray_of(vec2 pixel) {
   vec2 d = (pixel + jitter - pinhole.yz) / pinhole.x;
-  vec2 q = d;
-  for (int i = 0; i < 8; ++i) {
-    float r2 = dot(q, q);
-    q = d / (1.0 + r2 * (bending.x + bending.y * r2));
+  // Newton's way to the undistorted radius; film_lens.cpp has the same.
+  float bent = length(d), r = bent;
+  for (int i = 0; i < 4; ++i) {
+    float r2 = r * r;
+    r -= (r * (1.0 + r2 * (bending.x + bending.y * r2)) - bent) / (1.0 + r2 * (3.0 * bending.x + 5.0 * bending.y * r2));
   }
+  vec2 q = d * (r / max(bent, 1e-9));
   return mill_from_camera * vec3(q, 1.0);
 }
 
@@ -362,27 +364,25 @@ void main() {
   gl_FragDepth = depth_of(-clock.z) - 1e-4;
 })";
 
-// Adds a sub-exposure to the sum, seen through what sticks to the turning glass.
-inline constexpr const char* kSumFragment = R"(
-uniform sampler2D picture;
+// What sticks to the turning glass, over all that is behind it.
+inline constexpr const char* kGlassFragment = R"(
 uniform sampler2D on_glass;   // over the mill's own frame from -1.5 to 1.5
 uniform vec2 turning;
-uniform float mirror, share, glass_there;
-out vec4 sum;
+uniform float mirror;
+layout(location = 0) out vec4 light;
 void main() {
-  vec4 c = texelFetch(picture, ivec2(gl_FragCoord.xy), 0);
-  if (glass_there > 0.5) {
-    vec2 pixel = pixel_here();
-    vec3 d = ray_of(pixel);
-    vec2 at = eye.xy + d.xy / max(-d.z, 1e-3) * (eye.z - 0.01);
-    if (dot(at, at) < 1.1) {
-      float angle = turning.x + turning.y * row_time(pixel.y), ca = cos(angle), sa = sin(angle);
-      vec2 q = mat2(ca, -sa, sa, ca) * vec2(at.x * mirror, at.y);
-      vec4 dust = texture(on_glass, q / 3.0 + 0.5);
-      c.rgb = c.rgb * (1.0 - dust.a) + dust.rgb;
-    }
-  }
-  sum = c * share;
+  vec2 pixel = pixel_here();
+  vec3 d = ray_of(pixel);
+  vec2 at = eye.xy + d.xy / max(-d.z, 1e-3) * eye.z;
+  float angle = turning.x + turning.y * row_time(pixel.y), c = cos(angle), s = sin(angle);
+  light = texture(on_glass, mat2(c * mirror, -s * mirror, s, c) * at / 3.0 + 0.5) * step(dot(at, at), 1.1);
 })";
+
+// Adds a sub-exposure to the sum.
+inline constexpr const char* kSumFragment = R"(
+uniform sampler2D picture;
+uniform float share;
+out vec4 sum;
+void main() { sum = texelFetch(picture, ivec2(gl_FragCoord.xy), 0) * share; })";
 
 }  // namespace tumble::render::film
