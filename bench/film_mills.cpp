@@ -176,6 +176,7 @@ FilmMill simulate_random_mill(std::uint64_t seed, const Keeping& keeping) {
     }
     const double mean = sum / double(mill.config.charge.balls.size());
     mill.length = mill.layers == 1 ? 2 * largest * random.uniform(1.03, 1.3)
+                  : keeping.slabs  ? 2.02 * largest * mill.layers
                                    : std::max(2.05 * largest, mill.layers * 2 * mean * random.uniform(0.95, 1.1));
     mill.config.mill.length = mill.length;
     RunPlan& run = mill.config.run;
@@ -183,7 +184,9 @@ FilmMill simulate_random_mill(std::uint64_t seed, const Keeping& keeping) {
     run.revolutions = keeping.revolutions;
     try {
       check(mill.config);
-      const double seconds = keeping.revolutions * 60 / speed_rpm(mill.config.mill);
+      const double a_turn = 60 / speed_rpm(mill.config.mill);
+      if (keeping.seconds > 0) run.revolutions = keeping.seconds / a_turn;
+      const double seconds = run.revolutions * a_turn;
       run.frames_per_second = keeping.states_per_second > 0 ? keeping.states_per_second : 24 / seconds;
       for (int layer = 0; layer < mill.layers; ++layer) add_layer(mill, layer);
       return mill;
@@ -206,7 +209,15 @@ std::vector<FilmMill> cached_mills(const std::filesystem::path& file, std::uint6
   return mills;
 }
 
-std::vector<double> depths_of(const FilmMill& mill, const FilmMill::State& state, Random& random) {
+std::vector<double> slab_depths_of(const FilmMill& mill, Random& random) {
+  const double pitch = mill.length / mill.layers;
+  std::vector<double> z(mill.radius.size());
+  for (std::size_t i = 0; i < z.size(); ++i)
+    z[i] = -(mill.layer[i] + 0.5) * pitch + (0.5 * pitch - mill.radius[i]) * random.uniform(-1, 1);
+  return z;
+}
+
+PlacedBalls place_balls(const FilmMill& mill, const FilmMill::State& state, Random& random) {
   const std::size_t n = mill.radius.size();
   const double pitch = mill.length / mill.layers;
   std::vector<double> z(n);
@@ -216,8 +227,6 @@ std::vector<double> depths_of(const FilmMill& mill, const FilmMill::State& state
   const double spread = random.uniform(0, 0.5);
   for (std::size_t i = 0; i < n; ++i)
     z[i] = clamped(i, -(mill.layer[i] + 0.5) * pitch + pitch * spread * random.uniform(-1, 1));
-  if (mill.layers == 1) return z;
-
   // Neighbouring slices interlock: whoever overlaps is pushed apart along the axis, a little at a time.
   struct Pair {
     std::size_t i, j;
@@ -239,7 +248,22 @@ std::vector<double> depths_of(const FilmMill& mill, const FilmMill::State& state
       z[p.i] = clamped(p.i, z[p.i] + by);
       z[p.j] = clamped(p.j, z[p.j] - by);
     }
-  return z;
+  // Where that did not help, the smaller goes. A fifth of a radius may be left: contacts are soft, and nobody sees it.
+  std::vector<char> gone(n);
+  for (const Pair& p : pairs) {
+    if (mill.layer[p.i] == mill.layer[p.j] || gone[p.i] || gone[p.j]) continue;
+    const double dz = z[p.i] - z[p.j], reach = mill.radius[p.i] + mill.radius[p.j];
+    const double apart = std::sqrt(reach * reach - p.apart * p.apart + dz * dz);
+    const std::size_t smaller = mill.radius[p.i] < mill.radius[p.j] ? p.i : p.j;
+    if (reach - apart > 0.2 * mill.radius[smaller]) gone[smaller] = 1;
+  }
+  PlacedBalls placed;
+  for (std::size_t i = 0; i < n; ++i) {
+    if (gone[i]) continue;
+    placed.ball.push_back(i);
+    placed.z.push_back(z[i]);
+  }
+  return placed;
 }
 
 }  // namespace tumble::films

@@ -28,7 +28,9 @@ struct FilmMill {
 // How long and how densely a mill is kept.
 struct Keeping {
   double spin_up = 1.2, revolutions = 1.5;
+  double seconds = 0;            // instead of revolutions, where > 0
   double states_per_second = 0;  // 0: so that there are about 24
+  bool slabs = false;            // room for every layer to move by itself, none through another
 };
 
 FilmMill simulate_random_mill(std::uint64_t seed, const Keeping& keeping);
@@ -36,7 +38,15 @@ FilmMill simulate_random_mill(std::uint64_t seed, const Keeping& keeping);
 // `count` mills; read from the file if it holds them, else simulated and written there.
 std::vector<FilmMill> cached_mills(const std::filesystem::path& file, std::uint64_t seed, int count);
 
-// Depths for every ball: a layer each, jittered, no two through one another, none through glass or back plate [m].
-std::vector<double> depths_of(const FilmMill& mill, const FilmMill::State& state, Random& random);
+// Depths for every ball of slabs that never touch, for a film [m].
+std::vector<double> slab_depths_of(const FilmMill& mill, Random& random);
+
+// One state as a picture shows it: layers that interlock, none through glass or back plate. Balls that found no room
+// are left out.
+struct PlacedBalls {
+  std::vector<std::size_t> ball;
+  std::vector<double> z;  // [m]
+};
+PlacedBalls place_balls(const FilmMill& mill, const FilmMill::State& state, Random& random);
 
 }  // namespace tumble::films
