@@ -314,4 +314,36 @@ FilmLook random_look(std::uint64_t seed, int level) {
   return look;
 }
 
+FilmLook studio_look(std::uint64_t seed, int width, int height) {
+  FilmLook look = random_look(seed, 0);
+  Random random(seed * 71 + 19);
+  random.next();
+  BallMaterial steel;
+  steel.colour = tinted(random, random.uniform(0.25, 0.5), 0.03);
+  steel.dirt = 0.15;
+  look.balls.materials = {steel};
+  look.balls.mark = BallMark::kLine;
+  look.balls.marked_share = chance(random, 0.5) ? 1 : 0.1;
+  look.balls.mark_colour = grey(0.9);
+  look.balls.paints.clear();
+  look.balls.tracers = {paint_of(0.0, 0.7), paint_of(0.14, 0.8), paint_of(0.6, 0.7)};
+  look.balls.hollow_share = 0;
+  look.plate.surface.colour = tinted(random, random.uniform(0.08, 0.3), 0.03);
+  look.plate.surface.brushed = random.uniform(0.3, 0.7);
+  look.liner.colour = tinted(random, random.uniform(0.03, 0.15), 0.04);
+  look.flange.there = true;
+  look.flange.letters = 0;
+  look.flange.surface.colour = tinted(random, random.uniform(0.15, 0.4), 0.04);
+  look.room.wall = tinted(random, random.uniform(0.12, 0.5), 0.04);
+  look.room.rectangles = look.room.cables = look.room.discs = look.room.heaps = 0;
+  look.room.wheels = look.room.display = false;
+  look.room.stand_colour = tinted(random, 0.05, 0.3);
+  look.timing.exposure = 0.001;
+  look.sensor.level = 0.65;
+  look.sensor.saturation = 1;
+  place_mill(look.lens, width, height, 0.46 * std::min(width, height) / look.flange.outer, (width - 1) / 2.0,
+             (height - 1) / 2.0, 0);
+  return look;
+}
+
 }  // namespace tumble::render

@@ -175,6 +175,9 @@ struct FilmLook {
 // A look drawn at random. `level`: 0 a clean picture, 1 a careful laboratory, 2 a hurried one, 3 nasty.
 FilmLook random_look(std::uint64_t seed, int level);
 
+// A pleasant one: steel balls in a clean mill that fills the picture.
+FilmLook studio_look(std::uint64_t seed, int width, int height);
+
 // Aims and scales the view from where the camera stands: the middle of the mill's glass appears at (u, v), its radius
 // as about `radius_px`. `crop`: the share of the way there that comes from cutting the picture out of a larger one,
 // which moves the principal point, and not from turning the camera.
