@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <fstream>
 
@@ -137,6 +138,16 @@ void make_film(const FilmOrder& order) {
   std::ofstream csv(stem.string() + ".truth.csv");
   csv << "frame,id,u_px,v_px,r_px,visible,x_m,y_m,z_m,theta_rad,vx,vy\n";
 
+  // A camera on a shaky bench: slow sways and a quick tremble.
+  const double sway = order.level >= 2 && random.uniform() < 0.5 ? log_uniform(random, 0.2, 1.0 * order.level) : 0;
+  const double sway_hz = random.uniform(0.5, 3), tremble_hz = random.uniform(8, 25), phase = random.uniform(0, 6);
+  std::vector<std::array<double, 2>> shakes;
+  const auto shake_at = [&](double time) -> Eigen::Vector2d {
+    const double slow = 2 * kPi * sway_hz * time + phase, quick = 2 * kPi * tremble_hz * time;
+    return sway * Eigen::Vector2d(std::sin(slow) + 0.2 * std::sin(quick),
+                                  0.7 * std::sin(1.3 * slow + 1) + 0.3 * std::cos(quick));
+  };
+
   render::FilmCamera camera;
   camera.aim(look, scene);
   render::FilmPicture picture;
@@ -147,6 +158,7 @@ void make_film(const FilmOrder& order) {
       moment.time = mill.states[0].time + 0.02 + recorded / order.fps;
       moment.mill_angle = mill.states[0].mill_angle + mill.mill_speed * (moment.time - mill.states[0].time);
       moment.mill_speed = mill.mill_speed;
+      moment.shake = shake_at(moment.time);
       moment.ball = [&](std::size_t i, double later) {
         BallState b = state_at(mill, i, moment.time + later);
         b.z = z[i];
@@ -155,6 +167,8 @@ void make_film(const FilmOrder& order) {
       picture = camera.draw(moment, static_cast<std::uint64_t>(recorded));
       drawn = recorded;
     }
+    const Eigen::Vector2d shake = shake_at(mill.states[0].time + 0.02 + drawn / order.fps);
+    shakes.push_back({shake.x(), shake.y()});
     writer.write(picture.image);
     write_rows(csv, k, picture);
   }
@@ -178,6 +192,7 @@ void make_film(const FilmOrder& order) {
                                  {"mill", json_of(mill)},
                                  {"camera", json_of(look.lens, scene.shape.radius)},
                                  {"look", json_of(look)}};
+  if (sway > 0) json["shake_px"] = shakes;
   for (const render::SeenBall& b : picture.balls) {
     json["balls"]["radius_m"].push_back(mill.radius[b.ball]);
     json["balls"]["class"].push_back(mill.ball_class[b.ball]);

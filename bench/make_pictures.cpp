@@ -5,11 +5,13 @@
 #include <fstream>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
+#include <opencv2/videoio.hpp>
 
 #include "bench/film_commands.h"
 #include "bench/film_staging.h"
 #include "core/error.h"
 #include "core/parallel_for.h"
+#include "io/film_file.h"
 
 namespace fs = std::filesystem;
 
@@ -29,11 +31,30 @@ cv::Mat once_compressed(const cv::Mat& picture, int quality) {
   return cv::imdecode(bytes, cv::IMREAD_COLOR);
 }
 
+// The second frame of a film of two, as H.264 leaves it: noise wiped out, what moves smeared over what was there.
+cv::Mat as_filmed(const fs::path& stem, const Image& before, const Image& image, double crf) {
+  const std::string scratch = stem.string() + ".scratch.mp4";
+  io::FilmFormat format;
+  format.width = image.width;
+  format.height = image.height;
+  format.crf = crf;
+  format.threads = 1;
+  io::FilmWriter film(scratch, format);
+  film.write(before);
+  film.write(image);
+  film.finish();
+  cv::Mat picture;
+  cv::VideoCapture reader(scratch);
+  for (int k = 0; k < 2; ++k)
+    if (!reader.read(picture)) throw WorkError(scratch, "could not be read back");
+  fs::remove(scratch);
+  return picture;
+}
+
 // Compression as it happens to films: some pictures twice, on another grid of blocks.
-void write_picture(const fs::path& stem, const Image& image, int level, Random& random) {
-  cv::Mat picture = opencv_picture(image);
+void write_picture(const fs::path& stem, cv::Mat picture, int level, Random& random) {
   const auto quality = [&](double low, double high) { return static_cast<int>(random.uniform(low, high)); };
-  if (level > 0 && random.uniform() < 0.3) {
+  if (level > 0 && random.uniform() < 0.2) {
     const int shift = 1 + static_cast<int>(random.below(7));
     cv::Mat wide;
     cv::copyMakeBorder(picture, wide, shift, 0, shift, 0, cv::BORDER_REPLICATE);
@@ -104,9 +125,18 @@ void make_pictures(const PictureOrder& order) {
       return b;
     };
     camera.aim(look, scene);
-    const render::FilmPicture picture = camera.draw(moment, 0);
     const fs::path stem = order.folder / fmt::format("p{}_{:06}", order.seed, k);
-    write_picture(stem, picture.image, level, random);
+    const render::FilmPicture picture = camera.draw(moment, 1);
+    if (level > 0 && random.uniform() < 0.2) {
+      const double frame_time = 1 / log_uniform(random, 25, 240);
+      render::FilmMoment earlier = moment;
+      earlier.mill_angle -= mill.mill_speed * frame_time;
+      earlier.ball = [&](std::size_t i, double later) { return moment.ball(i, later - frame_time); };
+      const Image before = camera.draw(earlier, 0).image;
+      write_picture(stem, as_filmed(stem, before, picture.image, random.uniform(18, 34)), 0, random);
+    } else {
+      write_picture(stem, opencv_picture(picture.image), level, random);
+    }
     write_truth(stem, picture, scene);
     const nlohmann::ordered_json json = {{"seed", seed},
                                          {"level", level},

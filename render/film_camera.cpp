@@ -146,6 +146,7 @@ double exponent_of(double roughness) { return std::clamp(2 / std::pow(roughness,
 struct FilmCamera::Impl {
   Impl();
   void make_buffers();
+  void shake_by(const Eigen::Vector2d& by);
   void set_common(const Pipeline& pipeline) const;
   void set_drum(const Pipeline& part) const;
   void set_balls() const;
@@ -163,9 +164,10 @@ struct FilmCamera::Impl {
 
   FilmLook look;
   FilmScene scene;
-  Pinhole pinhole;
+  Pinhole at_rest, pinhole;  // without and with the picture's shake
+  Eigen::Vector2d shake{0, 0};
   std::vector<BallDress> dresses;
-  StillSheets still;
+  StillSheets still_at_rest, still;
   OutlineTable table;
   DrumParts parts;
   float gain = 0;  // 0: to be found with the next picture
@@ -232,10 +234,19 @@ void FilmCamera::Impl::make_buffers() {
   glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, summed, 0);
 }
 
+void FilmCamera::Impl::shake_by(const Eigen::Vector2d& by) {
+  if (by == shake) return;
+  shake = by;
+  pinhole.centre_u = at_rest.centre_u + by.x();
+  pinhole.centre_v = at_rest.centre_v + by.y();
+  still = {shifted(still_at_rest.front, by), shifted(still_at_rest.glare, by / 4)};
+}
+
 void FilmCamera::Impl::set_common(const Pipeline& pipeline) const {
   glUseProgram(pipeline.program);
   const Uniforms u{pipeline.program};
   u.set("image_size", width, height);
+  u.set("shake", shake.x(), shake.y());
   u.set("pinhole", pinhole.focal, pinhole.centre_u, pinhole.centre_v);
   u.set("bending", pinhole.k1, pinhole.k2);
   const Eigen::Matrix3f turn = pinhole.camera_from_mill.transpose().cast<float>();
@@ -501,7 +512,8 @@ void FilmCamera::aim(const FilmLook& look, const FilmScene& scene) {
   const CurrentContext current(my.context);
   my.look = look;
   my.scene = scene;
-  my.pinhole = make_pinhole(look.lens);
+  my.pinhole = my.at_rest = make_pinhole(look.lens);
+  my.shake = Eigen::Vector2d::Zero();
   my.dresses = dress(look.balls, scene, look.seed);
   my.gain = 0;
   my.make_buffers();
@@ -537,13 +549,14 @@ void FilmCamera::aim(const FilmLook& look, const FilmScene& scene) {
     std::copy(walls.at(0, j), walls.at(0, j) + 4 * walls.width,
               turned.begin() + 4 * static_cast<std::ptrdiff_t>(walls.height - 1 - j) * walls.width);
   fill_texture(my.room, GL_RGBA16F, GL_RGBA, walls.width, walls.height, turned.data());
-  my.still = {paint_front(look, place), paint_glare(look, place)};
+  my.still_at_rest = my.still = {paint_front(look, place), paint_glare(look, place)};
 }
 
 FilmPicture FilmCamera::draw(const FilmMoment& moment, std::uint64_t picture) {
   Impl& my = *impl_;
   const CurrentContext current(my.context);
   FilmPicture film;
+  my.shake_by(moment.shake);
   film.balls = my.see(moment);
   my.place(film.balls, my.look.timing.exposure);
   const int count = my.sub_exposures(film.balls, moment);

@@ -31,6 +31,7 @@ struct BallState {
 struct FilmMoment {
   double time = 0;                        // of the middle of the exposure of the picture's middle row [s]
   double mill_angle = 0, mill_speed = 0;  // [rad], [rad/s]
+  Eigen::Vector2d shake{0, 0};            // of a camera that does not stand still: all of the picture moves by it [px]
   std::function<BallState(std::size_t ball, double later)> ball;  // `later`: seconds after `time`, may be negative
 };
 

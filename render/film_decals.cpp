@@ -120,13 +120,10 @@ Sheet paint_glass(const FilmLook& look) {
     const double radius = std::sqrt(random.uniform()), angle = random.uniform(0, 2 * kPi);
     const double to = angle + random.uniform(-0.5, 0.5), out = std::min(1.0, radius + random.uniform(-0.1, 0.1));
     const auto white = static_cast<float>(random.uniform(0.3, 1.0));
-    Spot last = at(radius, angle);
-    for (int i = 1; i <= 8; ++i) {
-      const double share = i / 8.0;
-      const Spot next = at(radius + share * (out - radius), angle + share * (to - angle));
-      paint_stroke(sheet, {Light(white, white, white), glass.scratch, 1.2}, last, next, random.uniform(0.4, 1.4));
-      last = next;
-    }
+    std::vector<Spot> points;
+    for (int i = 0; i <= 8; ++i)
+      points.push_back(at(radius + i / 8.0 * (out - radius), angle + i / 8.0 * (to - angle)));
+    paint_line(sheet, {Light(white, white, white), glass.scratch, 1.2}, points, random.uniform(0.4, 1.4));
   }
   return sheet;
 }

@@ -48,19 +48,22 @@ float depth_of(float z) { return (0.4 - z) / (0.8 + clock.z); }
 // The room behind, which stands still.
 inline constexpr const char* kRoomFragment = R"(
 uniform sampler2D room;
+uniform vec2 shake;   // [px]
 layout(location = 0) out vec4 light;
 layout(location = 1) out float number;
 void main() {
   number = 0.0;
-  light = vec4(texture(room, (gl_FragCoord.xy + vec2(jitter.x, -jitter.y)) / image_size).rgb, 0.0);
+  vec2 moved = jitter - shake;
+  light = vec4(texture(room, (gl_FragCoord.xy + vec2(moved.x, -moved.y)) / image_size).rgb, 0.0);
 })";
 
 // Rings and discs of the picture where a part of the drum may be seen; their fragments decide.
 inline constexpr const char* kPartVertex = R"(
 layout(location = 0) in vec2 place;   // [px]
 uniform float at_depth;
+uniform vec2 shake;                   // [px]
 void main() {
-  gl_Position = clip_from_image(place);
+  gl_Position = clip_from_image(place + shake);
   gl_Position.z = at_depth * 2.0 - 1.0;
 })";
 

@@ -78,16 +78,15 @@ void paint_clutter(RoomPainter& my) {
       paint_writing(my.sheet, {grey(random.uniform(0, 0.8)), 0.8, my.soft}, where, Spot(1, 0), 0.03 * size, 5, random);
   }
   for (int k = 0; k < room.cables; ++k) {
-    Spot here(my.x(), my.y(0, 0.9));
+    std::vector<Spot> points{Spot(my.x(), my.y(0, 0.9))};
     double angle = random.uniform(0, 2 * kPi);
     const Paint with{any_colour(random, log_uniform(random, 0.005, 0.2)), random.uniform(0.5, 1), my.soft};
     const double width = random.uniform(0.004, 0.02) * size, bend = random.uniform(-0.3, 0.3);
     for (int i = 0; i < 12; ++i) {
-      const Spot next = here + 0.05 * size * Spot(std::cos(angle), std::sin(angle));
-      paint_stroke(my.sheet, with, here, next, width);
-      here = next;
+      points.push_back(points.back() + 0.05 * size * Spot(std::cos(angle), std::sin(angle)));
       angle += bend + random.uniform(-0.3, 0.3);
     }
+    paint_line(my.sheet, with, points, width);
   }
 }
 

@@ -52,11 +52,24 @@ void paint_ring(Sheet& sheet, const Paint& with, const Spot& centre, double radi
 }
 
 void paint_stroke(Sheet& sheet, const Paint& with, const Spot& from, const Spot& to, double width) {
-  const Spot reach(width, width), way = to - from;
-  const double length2 = std::max(way.squaredNorm(), 1e-9);
-  paint(sheet, with, from.cwiseMin(to) - reach, from.cwiseMax(to) + reach, [&](const Spot& p) {
-    const double along = std::clamp((p - from).dot(way) / length2, 0.0, 1.0);
-    return width / 2 - (p - from - along * way).norm();
+  paint_line(sheet, with, {from, to}, width);
+}
+
+void paint_line(Sheet& sheet, const Paint& with, const std::vector<Spot>& points, double width) {
+  Spot low = points.front(), high = low;
+  for (const Spot& p : points) {
+    low = low.cwiseMin(p);
+    high = high.cwiseMax(p);
+  }
+  const Spot reach(width, width);
+  paint(sheet, with, low - reach, high + reach, [&](const Spot& p) {
+    double off2 = 1e18;
+    for (std::size_t k = 0; k + 1 < points.size(); ++k) {
+      const Spot way = points[k + 1] - points[k];
+      const double along = std::clamp((p - points[k]).dot(way) / std::max(way.squaredNorm(), 1e-9), 0.0, 1.0);
+      off2 = std::min(off2, (p - points[k] - along * way).squaredNorm());
+    }
+    return width / 2 - std::sqrt(off2);
   });
 }
 
@@ -112,6 +125,22 @@ void add_glow(Sheet& sheet, const Light& colour, const Spot& centre, const Spot&
       for (int c = 0; c < 3; ++c) sheet.at(i, j)[c] += glow * colour[c];
     }
   }
+}
+
+Sheet shifted(const Sheet& sheet, const Spot& by) {
+  Sheet moved(sheet.width, sheet.height);
+  const double left = std::floor(-by.x()), up = std::floor(-by.y());
+  const auto a = static_cast<float>(-by.x() - left), b = static_cast<float>(-by.y() - up);
+  const auto column = [&](int i) { return std::clamp(i + static_cast<int>(left), 0, sheet.width - 1); };
+  const auto row = [&](int j) { return std::clamp(j + static_cast<int>(up), 0, sheet.height - 1); };
+  for (int j = 0; j < sheet.height; ++j)
+    for (int i = 0; i < sheet.width; ++i) {
+      const float *p = sheet.at(column(i), row(j)), *q = sheet.at(column(i + 1), row(j));
+      const float *r = sheet.at(column(i), row(j + 1)), *s = sheet.at(column(i + 1), row(j + 1));
+      for (int c = 0; c < 4; ++c)
+        moved.at(i, j)[c] = (1 - b) * ((1 - a) * p[c] + a * q[c]) + b * ((1 - a) * r[c] + a * s[c]);
+    }
+  return moved;
 }
 
 double smooth_noise(double x, double y, int period, std::uint64_t seed) {

@@ -35,6 +35,7 @@ void paint(Sheet& sheet, const Paint& with, const Spot& low, const Spot& high,
 void paint_disc(Sheet& sheet, const Paint& with, const Spot& centre, double radius);
 void paint_ring(Sheet& sheet, const Paint& with, const Spot& centre, double radius, double width);
 void paint_stroke(Sheet& sheet, const Paint& with, const Spot& from, const Spot& to, double width);
+void paint_line(Sheet& sheet, const Paint& with, const std::vector<Spot>& points, double width);
 void paint_box(Sheet& sheet, const Paint& with, const Spot& centre, const Spot& half, double angle);
 void paint_polygon(Sheet& sheet, const Paint& with, const Spot& centre, double radius, int corners, double angle);
 
@@ -44,6 +45,9 @@ void paint_writing(Sheet& sheet, const Paint& with, const Spot& begin, const Spo
 
 // Adds light without covering.
 void add_glow(Sheet& sheet, const Light& colour, const Spot& centre, const Spot& half, double angle);
+
+// The sheet moved by so many pixels; its borders repeat.
+Sheet shifted(const Sheet& sheet, const Spot& by);
 
 // Smooth noise in [0, 1] that repeats after `period` cells.
 double smooth_noise(double x, double y, int period, std::uint64_t seed);
