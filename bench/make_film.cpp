@@ -5,6 +5,7 @@
 #include <cmath>
 #include <fstream>
 
+#include "analysis/charge_motion.h"
 #include "bench/film_commands.h"
 #include "bench/film_staging.h"
 #include "core/error.h"
@@ -17,6 +18,9 @@ namespace tumble::films {
 namespace {
 
 using render::BallState;
+
+// The film begins so long after the first state: rolling shutters look back [s].
+constexpr double kLead = 0.02;
 
 // Cubic through places and velocities: a flight is exact.
 BallState between(const BallState& a, const BallState& b, double seconds, double share) {
@@ -95,12 +99,44 @@ void write_given(const fs::path& path, const FilmMill& mill, double speed_error)
   std::ofstream(path) << text << "]\n";
 }
 
+// Toe, shoulder and the rest as the run's own truth would have them: all layers' balls together, as a camera sees them.
+ChargeMotion charge_motion_of(const FilmMill& mill, double begin, int frames, double fps) {
+  RunSetup setup;
+  setup.config = mill.config;
+  setup.config.run.frames_per_second = fps;
+  setup.mill_speed = mill.mill_speed;
+  setup.frame_count = frames;
+  for (const double r : mill.radius) {
+    setup.balls.radius.push_back(r);
+    setup.balls.mass.push_back(7800 * 4.0 / 3 * kPi * r * r * r);
+  }
+  int next = 0;
+  return analysis::measure_frames(setup, [&](Frame& frame) {
+    if (next >= frames) return false;
+    frame = {};
+    frame.time = next / fps;
+    frame.mill_angle = mill.states[0].mill_angle + mill.mill_speed * (begin + frame.time - mill.states[0].time);
+    for (std::size_t i = 0; i < mill.radius.size(); ++i) {
+      const BallState b = state_at(mill, i, begin + frame.time);
+      frame.x.push_back(b.x);
+      frame.y.push_back(b.y);
+      frame.vx.push_back(b.vx);
+      frame.vy.push_back(b.vy);
+      frame.angle.push_back(b.angle);
+      frame.spin.push_back(b.spin);
+    }
+    ++next;
+    return true;
+  });
+}
+
 void write_rows(std::ofstream& csv, std::size_t frame, const render::FilmPicture& picture) {
   for (const render::SeenBall& b : picture.balls) {
     const double r = b.radius_px;
     if (b.u < -r || b.v < -r || b.u > picture.image.width + r || b.v > picture.image.height + r) continue;
-    csv << fmt::format("{},{},{:.3f},{:.3f},{:.3f},{:.3f},{:.6f},{:.6f},{:.6f},{:.4f},{:.5f},{:.5f}\n", frame, b.ball,
-                       b.u, b.v, r, b.visible, b.state.x, b.state.y, b.state.z, b.state.angle, b.state.vx, b.state.vy);
+    csv << fmt::format("{},{},{:.3f},{:.3f},{:.3f},{:.3f},{:.6f},{:.6f},{:.6f},{:.4f},{:.5f},{:.5f},{:.3f}\n", frame,
+                       b.ball, b.u, b.v, r, b.visible, b.state.x, b.state.y, b.state.z, b.state.angle, b.state.vx,
+                       b.state.vy, b.glare);
   }
 }
 
@@ -136,7 +172,7 @@ void make_film(const FilmOrder& order) {
   io::FilmWriter writer(order.file.string(), format);
   const fs::path stem = order.file.parent_path() / order.file.stem();
   std::ofstream csv(stem.string() + ".truth.csv");
-  csv << "frame,id,u_px,v_px,r_px,visible,x_m,y_m,z_m,theta_rad,vx,vy\n";
+  csv << "frame,id,u_px,v_px,r_px,visible,x_m,y_m,z_m,theta_rad,vx,vy,glare\n";
 
   // A camera on a shaky bench: slow sways and a quick tremble.
   const double sway = order.level >= 2 && random.uniform() < 0.5 ? log_uniform(random, 0.2, 1.0 * order.level) : 0;
@@ -155,7 +191,7 @@ void make_film(const FilmOrder& order) {
   for (std::size_t k = 0; k < base.recorded_of_file.size(); ++k) {
     if (const int recorded = base.recorded_of_file[k]; recorded != drawn) {
       render::FilmMoment moment;
-      moment.time = mill.states[0].time + 0.02 + recorded / order.fps;
+      moment.time = mill.states[0].time + kLead + recorded / order.fps;
       moment.mill_angle = mill.states[0].mill_angle + mill.mill_speed * (moment.time - mill.states[0].time);
       moment.mill_speed = mill.mill_speed;
       moment.shake = shake_at(moment.time);
@@ -167,7 +203,7 @@ void make_film(const FilmOrder& order) {
       picture = camera.draw(moment, static_cast<std::uint64_t>(recorded));
       drawn = recorded;
     }
-    const Eigen::Vector2d shake = shake_at(mill.states[0].time + 0.02 + drawn / order.fps);
+    const Eigen::Vector2d shake = shake_at(mill.states[0].time + kLead + drawn / order.fps);
     shakes.push_back({shake.x(), shake.y()});
     writer.write(picture.image);
     write_rows(csv, k, picture);
@@ -188,11 +224,24 @@ void make_film(const FilmOrder& order) {
                                  {"direction", scene.clockwise ? "clockwise" : "anticlockwise"},
                                  {"rpm", rpm_from_rad_s(mill.mill_speed)},
                                  {"speed_error_given", speed_error},
-                                 {"first_frame_mill_angle_rad", mill.states[0].mill_angle + 0.02 * mill.mill_speed},
+                                 {"first_frame_mill_angle_rad", mill.states[0].mill_angle + kLead * mill.mill_speed},
                                  {"mill", json_of(mill)},
                                  {"camera", json_of(look.lens, scene.shape.radius)},
                                  {"look", json_of(look)}};
   if (sway > 0) json["shake_px"] = shakes;
+  const ChargeMotion motion = charge_motion_of(mill, mill.states[0].time + kLead, frames, order.fps);
+  const auto known = [](double value) {
+    return std::isnan(value) ? nlohmann::ordered_json() : nlohmann::ordered_json(value);
+  };
+  for (const auto& [name, estimate] :
+       {std::pair{"toe_deg", motion.toe_deg}, std::pair{"shoulder_deg", motion.shoulder_deg},
+        std::pair{"toe_bulk_deg", motion.toe_bulk_deg}, std::pair{"shoulder_bulk_deg", motion.shoulder_bulk_deg},
+        std::pair{"toe_outer_deg", motion.toe_outer_deg}, std::pair{"shoulder_outer_deg", motion.shoulder_outer_deg}})
+    json["charge"][name] = known(estimate.value);
+  for (const ProfileRow& row : motion.profile) {
+    json["charge"]["toe_deg_of_recorded_frame"].push_back(known(row.toe_deg));
+    json["charge"]["shoulder_deg_of_recorded_frame"].push_back(known(row.shoulder_deg));
+  }
   for (const render::SeenBall& b : picture.balls) {
     json["balls"]["radius_m"].push_back(mill.radius[b.ball]);
     json["balls"]["class"].push_back(mill.ball_class[b.ball]);

@@ -69,13 +69,13 @@ void write_picture(const fs::path& stem, cv::Mat picture, int level, Random& ran
 
 void write_truth(const fs::path& stem, const render::FilmPicture& picture, const render::FilmScene& scene) {
   std::ofstream csv(stem.string() + ".csv");
-  csv << "id,u_px,v_px,r_px,visible,x_m,y_m,z_m,theta_rad,class,marked\n";
+  csv << "id,u_px,v_px,r_px,visible,x_m,y_m,z_m,theta_rad,class,marked,glare\n";
   for (const render::SeenBall& b : picture.balls) {
     const double r = b.radius_px;
     if (b.u < -r || b.v < -r || b.u > picture.image.width + r || b.v > picture.image.height + r) continue;
-    csv << fmt::format("{},{:.3f},{:.3f},{:.3f},{:.3f},{:.6f},{:.6f},{:.6f},{:.4f},{},{}\n", b.ball, b.u, b.v, r,
+    csv << fmt::format("{},{:.3f},{:.3f},{:.3f},{:.3f},{:.6f},{:.6f},{:.6f},{:.4f},{},{},{:.3f}\n", b.ball, b.u, b.v, r,
                        b.visible, b.state.x, b.state.y, b.state.z, b.state.angle, scene.ball_class[b.ball],
-                       int(b.marked));
+                       int(b.marked), b.glare);
   }
   if (!csv.flush()) throw WorkError(stem.string() + ".csv", "could not be written");
   const cv::Mat mask(picture.image.height, picture.image.width, CV_8UC1,

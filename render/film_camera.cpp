@@ -584,6 +584,7 @@ FilmPicture FilmCamera::draw(const FilmMoment& moment, std::uint64_t picture) {
     const MillPlace place = my.place_in_picture();
     my.gain = exposure_gain(light, my.look, place.centre, place.radius);
   }
+  for (SeenBall& s : film.balls) s.glare = my.gain * glare_at(my.still, s.u, s.v);
   film.image = develop(std::move(light), my.look, my.still, my.gain, moment.time, my.look.seed * 1000003 + picture);
   return film;
 }

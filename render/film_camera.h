@@ -40,6 +40,7 @@ struct SeenBall {  // at the middle of the exposure of its own row; x to the rig
   double u = 0, v = 0;   // the centre's projection [px]
   double radius_px = 0;  // of a disc with the silhouette's area
   double visible = 0;    // share of the disc that is seen
+  double glare = 0;      // light that the front glass mirrors over its middle, over white; hides what it outshines
   BallState state;
   bool marked = false, tracer = false;
 };

@@ -173,6 +173,14 @@ float exposure_gain(const Sheet& light, const FilmLook& look, const Spot& centre
   return static_cast<float>(look.sensor.level) / std::max(*bright, 1e-4f);
 }
 
+double glare_at(const StillSheets& still, double u, double v) {
+  const Sheet& glare = still.glare;
+  const int i = static_cast<int>(std::clamp((u + 0.5) / 4, 0.0, glare.width - 1.0));
+  const int j = static_cast<int>(std::clamp((v + 0.5) / 4, 0.0, glare.height - 1.0));
+  const float* p = glare.at(i, j);
+  return 0.2126 * p[0] + 0.7152 * p[1] + 0.0722 * p[2];
+}
+
 Image develop(Sheet light, const FilmLook& look, const StillSheets& still, float gain, double time,
               std::uint64_t noise_seed) {
   put_in_front(light, still);

@@ -17,6 +17,9 @@ struct StillSheets {
 // The gain that brings the bright parts of the mill (within `radius` of the place) to the sensor's level.
 float exposure_gain(const Sheet& light, const FilmLook& look, const Spot& centre, double radius);
 
+// Brightness of the glare at a place of the picture, before the gain.
+double glare_at(const StillSheets& still, double u, double v);
+
 // From linear light to the picture: front and glare, lens blur, vignette, noise, gamma, sharpening, overlay.
 Image develop(Sheet light, const FilmLook& look, const StillSheets& still, float gain, double time,
               std::uint64_t noise_seed);
