@@ -116,7 +116,7 @@ void write_mills(const std::filesystem::path& file, const std::vector<FilmMill>&
   for (const FilmMill& m : mills) {
     const std::string toml = io::to_toml(m.config);
     put(out, std::vector<char>(toml.begin(), toml.end()));
-    put(out, std::vector<double>{double(m.layers), m.length, m.mill_speed});
+    put(out, std::vector<double>{double(m.layers), m.length, m.mill_speed, m.charge_depth});
     put(out, m.radius);
     put(out, m.ball_class);
     put(out, m.layer);
@@ -144,6 +144,7 @@ std::vector<FilmMill> read_mills(const std::filesystem::path& file, int count) {
     m.layers = static_cast<int>(numbers.at(0));
     m.length = numbers.at(1);
     m.mill_speed = numbers.at(2);
+    m.charge_depth = numbers.at(3);
     get(in, m.radius);
     get(in, m.ball_class);
     get(in, m.layer);
@@ -178,6 +179,10 @@ FilmMill simulate_random_mill(std::uint64_t seed, const Keeping& keeping) {
     mill.length = mill.layers == 1 ? 2 * largest * random.uniform(1.03, 1.3)
                   : keeping.slabs  ? 2.02 * largest * mill.layers
                                    : std::max(2.05 * largest, mill.layers * 2 * mean * random.uniform(0.95, 1.1));
+    mill.charge_depth = mill.length;
+    // Some mills go on behind: what lies there would be hidden by what is simulated, but for a dark background.
+    if (mill.layers > 2 && random.uniform() < 0.4)
+      mill.length += random.uniform(0.1, 0.7) * mill.config.mill.diameter / 2;
     mill.config.mill.length = mill.length;
     RunPlan& run = mill.config.run;
     run.spin_up = keeping.spin_up;
@@ -210,7 +215,7 @@ std::vector<FilmMill> cached_mills(const std::filesystem::path& file, std::uint6
 }
 
 std::vector<double> slab_depths_of(const FilmMill& mill, Random& random) {
-  const double pitch = mill.length / mill.layers;
+  const double pitch = mill.charge_depth / mill.layers;
   std::vector<double> z(mill.radius.size());
   for (std::size_t i = 0; i < z.size(); ++i)
     z[i] = -(mill.layer[i] + 0.5) * pitch + (0.5 * pitch - mill.radius[i]) * random.uniform(-1, 1);
@@ -219,10 +224,10 @@ std::vector<double> slab_depths_of(const FilmMill& mill, Random& random) {
 
 PlacedBalls place_balls(const FilmMill& mill, const FilmMill::State& state, Random& random) {
   const std::size_t n = mill.radius.size();
-  const double pitch = mill.length / mill.layers;
+  const double pitch = mill.charge_depth / mill.layers;
   std::vector<double> z(n);
   const auto clamped = [&](std::size_t i, double value) {
-    return std::clamp(value, -mill.length + mill.radius[i], -mill.radius[i]);
+    return std::clamp(value, -mill.charge_depth + mill.radius[i], -mill.radius[i]);
   };
   const double spread = random.uniform(0, 0.5);
   for (std::size_t i = 0; i < n; ++i)

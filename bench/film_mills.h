@@ -15,6 +15,7 @@ struct FilmMill {
   Config config;
   int layers = 1;
   double length = 0;                   // glass to back plate [m]
+  double charge_depth = 0;             // from the glass: less than the length where the layers behind are left out [m]
   double mill_speed = 0;               // [rad/s]
   std::vector<double> radius;          // of every ball of every layer [m]
   std::vector<int> ball_class, layer;  // of every ball

@@ -99,9 +99,9 @@ std::vector<Lamp> random_lamps(Random& random, int level) {
 }
 
 // What mills are charged with, and what is taken instead in teaching mills.
-BallMaterial random_material(Random& random, int level) {
+BallMaterial random_material(Random& random, int level, bool only_steel) {
   BallMaterial m;
-  switch (random.below(8)) {
+  switch (random.below(only_steel ? 3 : 8)) {
     case 0:
     case 1:  // bright steel
       m = {tinted(random, random.uniform(0.45, 0.8), 0.03), random.uniform(0.6, 1), random.uniform(0.3, 1),
@@ -138,11 +138,11 @@ BallMaterial random_material(Random& random, int level) {
   return m;
 }
 
-BallLook random_balls(Random& random, int level) {
+BallLook random_balls(Random& random, int level, bool only_steel) {
   BallLook balls;
   balls.materials.clear();
   const int kinds = chance(random, 0.6) ? 1 : 2 + static_cast<int>(random.below(3));
-  for (int k = 0; k < kinds; ++k) balls.materials.push_back(random_material(random, level));
+  for (int k = 0; k < kinds; ++k) balls.materials.push_back(random_material(random, level, only_steel));
   // Often the same stuff, only older or newer.
   if (kinds > 1 && chance(random, 0.5))
     for (BallMaterial& m : balls.materials) {
@@ -165,7 +165,7 @@ BallLook random_balls(Random& random, int level) {
                                             : grey(random.uniform(0, 0.1));
   balls.mark_width = random.uniform(0.07, 0.25);
   balls.mark_tilt = level == 0 ? 0 : random.uniform(0, by_level(level, 0.05, 0.4));
-  if (chance(random, 0.25)) {
+  if (chance(random, only_steel ? 0.05 : 0.25)) {
     const int count = 1 + static_cast<int>(random.below(5));
     for (int k = 0; k < count; ++k) balls.paints.push_back(paint_of(random.uniform(), random.uniform(0.2, 0.9)));
     balls.painted_share = random.uniform(0.1, 1);
@@ -301,13 +301,23 @@ FilmLook random_look(std::uint64_t seed, int level) {
   const double ambient = random.uniform(0.1, 0.9);
   look.ambient_above = tinted(random, ambient, 0.08);
   look.ambient_below = tinted(random, ambient * random.uniform(0.15, 0.8), 0.1);
-  look.balls = random_balls(random, level);
+  // A third are what most mills are: steel in steel, in a grey hall.
+  const bool steel = chance(random, 0.35);
+  look.balls = random_balls(random, level, steel);
   look.liner = random_surface(random, level, 0.01, 0.6);
   look.flange = random_flange(random, level);
   look.plate = random_plate(random, level);
   look.glass = random_glass(random, level);
   look.room = random_room(random, level);
   look.front = random_front(random, level);
+  if (steel) {
+    for (Surface* face : {&look.liner, &look.flange.surface, &look.plate.surface}) {
+      face->colour = tinted(random, log_uniform(random, 0.02, 0.5), 0.04);
+      face->gloss = random.uniform(0.1, 0.6);
+    }
+    look.room.wall = tinted(random, log_uniform(random, 0.05, 0.6), 0.05);
+    look.sensor.saturation *= 0.8;
+  }
   if (level > 0 && chance(random, 0.2)) look.overlay.clock = true;
   if (level > 0 && chance(random, 0.2)) look.overlay.words = 1 + static_cast<int>(random.below(3));
   place_mill(look.lens, 1280, 720, 290, 639.5, 359.5, 0);
