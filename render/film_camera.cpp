@@ -100,6 +100,20 @@ void fill_texture(GLuint name, GLint format, GLenum channels, int width, int hei
   glTexImage2D(GL_TEXTURE_2D, 0, format, width, height, 0, channels, GL_FLOAT, data);
 }
 
+// Where in the pixel each sub-exposure looks: a sequence of low discrepancy (Roberts 2018). Its mean is taken out, for
+// that would move the whole picture.
+std::vector<Eigen::Vector2d> jitters_of(int count, double first) {
+  std::vector<Eigen::Vector2d> jitters;
+  Eigen::Vector2d mean(0, 0);
+  for (int k = 1; k <= count; ++k) {
+    jitters.emplace_back(std::fmod(first + 0.7548776662466927 * k, 1.0),
+                         std::fmod(first + 0.5698402909980532 * k, 1.0));
+    mean += jitters.back() / count;
+  }
+  for (Eigen::Vector2d& j : jitters) j -= mean;
+  return jitters;
+}
+
 constexpr int kNoiseSize = 256;
 
 // Four kinds of noise: two sorts of clouds, fine grain, and clouds of middling size.
@@ -428,18 +442,15 @@ void FilmCamera::Impl::shoot(const FilmMoment& moment, int count, std::vector<fl
   for (const Pipeline* part : {&flange, &plate, &wall}) set_drum(*part);
 
   const double deep = scene.length / scene.shape.radius;
-  const double first = Random(look.seed + 77).uniform();
+  const std::vector<Eigen::Vector2d> jitters = jitters_of(count, Random(look.seed + 77).uniform());
   read_back.resize(static_cast<std::size_t>(width) * height);
   for (int k = 0; k < count; ++k) {
-    // Evenly spread over time and, by a sequence of low discrepancy (Roberts 2018), over the pixel.
     const double when = look.timing.exposure * ((k + 0.5) / count - 0.5);
-    const double jitter_u = std::fmod(first + 0.7548776662466927 * (k + 1), 1.0) - 0.5;
-    const double jitter_v = std::fmod(first + 0.5698402909980532 * (k + 1), 1.0) - 0.5;
     const auto begin = [&](const Pipeline& pipeline) {
       glUseProgram(pipeline.program);
       glBindVertexArray(pipeline.vertex_array);
       const Uniforms u{pipeline.program};
-      u.set("jitter", jitter_u, jitter_v);
+      u.set("jitter", jitters[k].x(), jitters[k].y());
       u.set("clock", when, look.timing.readout, deep);
       return u;
     };
