@@ -12,10 +12,12 @@
 #include "core/units.h"
 #include "render/film_crowd.h"
 #include "render/film_develop.h"
+#include "render/film_dress.h"
 #include "render/film_lens.h"
 #include "render/film_parts.h"
 #include "render/film_shaders.h"
 #include "render/film_sheets.h"
+#include "render/film_textures.h"
 #include "render/offscreen_context.h"
 #include "render/outline_table.h"
 #include "render/shader.h"
@@ -27,78 +29,12 @@ float f(double value) { return static_cast<float>(value); }
 
 std::string indexed(const char* name, int k) { return fmt::format("{}[{}]", name, k); }
 
-// What a ball looks like for good.
-struct BallDress {
-  Light colour;
-  float kind = 0;  // as kBallVertex has it
-  float brightness = 1, material = 0, tilt = 0;
-  float chance_x = 0, chance_y = 0;
-  bool marked = false, tracer = false;
-};
-
-std::vector<BallDress> dress(const BallLook& look, const FilmScene& scene, std::uint64_t seed) {
-  std::vector<BallDress> all(scene.radius.size());
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    Random random(seed * 0x9E3779B9ull + 7919 * i + 1);
-    random.next();
-    BallDress& b = all[i];
-    const std::size_t kinds = std::min<std::size_t>(look.materials.size(), 4);
-    const std::size_t kind = look.by_class && i < scene.ball_class.size()
-                                 ? static_cast<std::size_t>(scene.ball_class[i]) % kinds
-                                 : static_cast<std::size_t>(random.below(kinds));
-    const BallMaterial& material = look.materials[kind];
-    b.material = static_cast<float>(kind);
-    b.colour = material.colour;
-    b.brightness = f(std::exp(material.variation * std::clamp(gaussian(random), -2.5, 2.5)));
-    b.chance_x = f(random.uniform());
-    b.chance_y = f(random.uniform());
-    if (chance(random, look.painted_share) && !look.paints.empty())
-      b.colour = look.paints[random.below(look.paints.size())];
-    if (look.mark != BallMark::kNone && chance(random, look.marked_share)) {
-      b.kind = look.mark == BallMark::kLine ? 1.f : look.mark == BallMark::kHalf ? 2.f : 3.f;
-      b.marked = true;
-    } else if (chance(random, look.hollow_share)) {
-      b.kind = 4;
-    }
-    b.tilt = f(look.mark_tilt * gaussian(random));
-    if (b.kind == 4) b.tilt = f(random.uniform(0, 6));
-  }
-  Random random(seed * 59 + 31);
-  for (const Light& colour : look.tracers) {
-    if (all.empty()) break;
-    BallDress& b = all[random.below(all.size())];
-    b.colour = colour;
-    b.kind = 0;
-    b.marked = false;
-    b.tracer = true;
-    b.brightness = 1;
-  }
-  return all;
-}
-
 struct BallInstance {
   float box[4], ball[4], motion[4], turn[4], colour[4], crowd[4], chance[4];
 };
 struct ShadowInstance {
   float box[4], shadow[4], motion[4];
 };
-
-GLuint make_texture(GLint wrap) {
-  GLuint name = 0;
-  glGenTextures(1, &name);
-  glBindTexture(GL_TEXTURE_2D, name);
-  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
-  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
-  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, wrap);
-  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, wrap);
-  return name;
-}
-
-void fill_texture(GLuint name, GLint format, GLenum channels, int width, int height, const float* data) {
-  glBindTexture(GL_TEXTURE_2D, name);
-  glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
-  glTexImage2D(GL_TEXTURE_2D, 0, format, width, height, 0, channels, GL_FLOAT, data);
-}
 
 // Where in the pixel each sub-exposure looks: a sequence of low discrepancy (Roberts 2018). Its mean is taken out, for
 // that would move the whole picture.
@@ -112,25 +48,6 @@ std::vector<Eigen::Vector2d> jitters_of(int count, double first) {
   }
   for (Eigen::Vector2d& j : jitters) j -= mean;
   return jitters;
-}
-
-constexpr int kNoiseSize = 256;
-
-// Four kinds of noise: two sorts of clouds, fine grain, and clouds of middling size.
-std::vector<float> noise_texels() {
-  std::vector<float> texels(static_cast<std::size_t>(kNoiseSize) * kNoiseSize * 4);
-  Random random(99);
-  for (int j = 0; j < kNoiseSize; ++j)
-    for (int i = 0; i < kNoiseSize; ++i) {
-      float* p = texels.data() + 4 * (static_cast<std::size_t>(j) * kNoiseSize + i);
-      const double x = double(i) / kNoiseSize, y = double(j) / kNoiseSize;
-      const auto stretched = [](double value) { return f(std::clamp(0.5 + 1.5 * (value - 0.5), 0.0, 1.0)); };
-      p[0] = stretched(cloudy_noise(6 * x, 6 * y, 6, 5, 1));
-      p[1] = stretched(cloudy_noise(9 * x, 9 * y, 9, 5, 2));
-      p[2] = f(0.6 * random.uniform() + 0.4 * smooth_noise(90 * x, 90 * y, 90, 3));
-      p[3] = stretched(cloudy_noise(24 * x, 24 * y, 24, 3, 4));
-    }
-  return texels;
 }
 
 // Texture units.
@@ -215,7 +132,7 @@ FilmCamera::Impl::Impl() {
   for (GLuint k = 0; k < 3; ++k)
     set_attribute(shadows, k, 4, GL_FLOAT, false, sizeof(ShadowInstance), k * 4 * sizeof(float), 1);
   noise = make_texture(GL_REPEAT);
-  fill_texture(noise, GL_RGBA16F, GL_RGBA, kNoiseSize, kNoiseSize, noise_texels().data());
+  fill_with_noise(noise);
   outline = make_texture(GL_CLAMP_TO_EDGE);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_REPEAT);
   decals = make_texture(GL_CLAMP_TO_EDGE);
@@ -525,7 +442,7 @@ void FilmCamera::aim(const FilmLook& look, const FilmScene& scene) {
   my.scene = scene;
   my.pinhole = my.at_rest = make_pinhole(look.lens);
   my.shake = Eigen::Vector2d::Zero();
-  my.dresses = dress(look.balls, scene, look.seed);
+  my.dresses = dress(look.balls, scene.ball_class, look.seed);
   my.gain = 0;
   my.make_buffers();
   my.table = make_outline_table(scene.shape);
