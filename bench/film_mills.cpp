@@ -3,13 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <fstream>
 #include <string>
 
 #include "core/error.h"
-#include "core/mill_shape.h"
 #include "core/units.h"
 #include "io/config_file.h"
 #include "sim/simulator.h"

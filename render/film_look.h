@@ -76,8 +76,8 @@ struct BallMaterial {
 enum class BallMark { kNone, kLine, kHalf, kDots };
 
 struct BallLook {
-  std::vector<BallMaterial> materials{1};
-  bool by_class = false;  // a material for each class of balls, or any for any ball
+  std::vector<BallMaterial> materials{1};  // one to four
+  bool by_class = false;                   // a material for each class of balls, or any for any ball
   BallMark mark = BallMark::kNone;
   double marked_share = 0;  // of the balls
   Light mark_colour{0.9f, 0.9f, 0.9f};
@@ -160,7 +160,7 @@ struct FilmLook {
   FilmLens lens;
   FilmTiming timing;
   FilmSensor sensor;
-  std::vector<Lamp> lamps{1};
+  std::vector<Lamp> lamps{1};  // one or two
   Light ambient_above{0.35f, 0.35f, 0.35f}, ambient_below{0.15f, 0.15f, 0.15f};
   BallLook balls;
   Surface liner;  // shell and lifters
