@@ -156,6 +156,22 @@ TEST(FilmCamera, RollingShutterShiftsWhatMoves) {
   EXPECT_NEAR(moving.balls[0].state.x, speed * later, 1e-5);
 }
 
+TEST(FilmCamera, AShakingCameraMovesPictureAndTruthAlike) {
+  const FilmLook look = slanted_look();
+  FilmCamera camera;
+  camera.aim(look, scene_with({0.015}));
+  FilmMoment moment;
+  moment.ball = [](std::size_t, double) { return BallState{0.05, -0.08, -0.03}; };
+  const FilmPicture still = camera.draw(moment, 0);
+  moment.shake = {3.4, -2.7};
+  const FilmPicture moved = camera.draw(moment, 1);
+  const Cover before = cover_of(still), after = cover_of(moved);
+  EXPECT_NEAR(after.u - before.u, 3.4, 0.05);
+  EXPECT_NEAR(after.v - before.v, -2.7, 0.05);
+  EXPECT_NEAR(moved.balls[0].u - still.balls[0].u, 3.4, 1e-9);
+  EXPECT_NEAR(moved.balls[0].v - still.balls[0].v, -2.7, 1e-9);
+}
+
 TEST(FilmCamera, AClockwiseMillIsSeenFromItsOtherEnd) {
   FilmScene scene = scene_with({0.015});
   scene.clockwise = true;
