@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "cli/film_theme.h"
 #include "cli/options.h"
 #include "cli/steps.h"
 #include "cli/verbs.h"
@@ -20,7 +21,8 @@ const std::map<std::string, render::Colour> kColours = {{"speed", render::Colour
 
 struct Options : CommonOptions {
   fs::path run, output;
-  std::string size = "1280x720", overlay = "toe,shoulder", colour = "speed";
+  std::string size = "1280x720", overlay = "toe,shoulder", colour = "speed", theme = "default";
+  std::uint64_t look_seed = 1;
   double fps = 60;
   FilmPlan plan;
 };
@@ -44,8 +46,12 @@ render::Overlay parse_overlay(const std::string& list) {
   return overlay;
 }
 
+enum class Theme { kDefault, kFilm };
+const std::map<std::string, Theme> kThemes = {{"default", Theme::kDefault}, {"film", Theme::kFilm}};
+
 void render(Options o) {
   limit_threads(o.threads);
+  const bool filmed = parse_name(o.theme, "--theme", kThemes) == Theme::kFilm;
   parse_size(o.size, "--size", o.plan.format.width, o.plan.format.height);
   parse_rate(o.fps, "--fps", o.plan.format.fps_numerator, o.plan.format.fps_denominator);
   if (!(o.plan.style.slow >= 0.01 && o.plan.style.slow <= 1e4))
@@ -69,9 +75,10 @@ void render(Options o) {
   }
   const io::RunReader run(o.run);
   ChargeMotion truth;
-  if (o.plan.style.overlay.toe || o.plan.style.overlay.shoulder) truth = measure_run(run, o);
+  if (!filmed && (o.plan.style.overlay.toe || o.plan.style.overlay.shoulder)) truth = measure_run(run, o);
   truth.origin = o.run.string();
-  const std::size_t frames = render_run(run, truth, o.plan, o.output, pictures, o);
+  const std::size_t frames = filmed ? render_filmed_run(run, o.plan, o.look_seed, o.output, pictures, o)
+                                    : render_run(run, truth, o.plan, o.output, pictures, o);
   if (!o.json) return;
   const nlohmann::ordered_json summary = {{"output", o.output.string()},    {"frames", frames},
                                           {"frames_per_second", o.fps},     {"slow", o.plan.style.slow},
@@ -92,6 +99,11 @@ void add_render(CLI::App& app) {
   verb->add_option("--colour", o->colour, "Colour of the balls: speed, size, spin or steel")->capture_default_str();
   verb->add_option("--overlay", o->overlay, "Any of toe,shoulder,tracks,velocity, or none")->capture_default_str();
   verb->add_flag("--mirror", o->plan.style.mirror, "See the mill from its other end: it turns clockwise");
+  verb->add_option("--theme", o->theme,
+                   "default, or film: as a laboratory's camera sees the mill, without marks, colours and text")
+      ->capture_default_str();
+  verb->add_option("--look-seed", o->look_seed, "Which light and materials the film theme takes")
+      ->capture_default_str();
   verb->add_option("--preset", o->plan.format.preset, "x264 preset, ultrafast to veryslow")->capture_default_str();
   verb->add_option("--crf", o->plan.format.crf, "x264 quality, 0 (lossless) to 51")->capture_default_str();
   add_common(*verb, *o);

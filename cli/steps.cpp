@@ -10,6 +10,7 @@
 #include <memory>
 #include <vector>
 
+#include "cli/run_player.h"
 #include "core/angle.h"
 #include "core/error.h"
 #include "core/parallel_for.h"
@@ -19,38 +20,6 @@
 
 namespace tumble::cli {
 namespace {
-
-// The run at any time: keeps the two stored frames round it.
-class RunPlayer {
- public:
-  explicit RunPlayer(const io::RunReader& run) : run_(run) {}
-
-  Frame at(double time) {
-    const std::vector<double>& times = run_.time();
-    const auto after = std::upper_bound(times.begin(), times.end(), time + 1e-9);
-    const std::size_t i = after == times.begin() ? 0 : static_cast<std::size_t>(after - times.begin()) - 1;
-    load(i);
-    if (i + 1 >= times.size()) return a_;
-    return time - times[i] < 1e-9 ? a_ : between(a_, b_, time);
-  }
-
- private:
-  void load(std::size_t i) {
-    if (i == index_) return;
-    const bool next = index_ != kNone && i == index_ + 1;
-    index_ = i;
-    if (next)
-      std::swap(a_, b_);
-    else
-      a_ = run_.frame(i);
-    if (i + 1 < run_.frame_count()) b_ = run_.frame(i + 1);
-  }
-
-  static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
-  const io::RunReader& run_;
-  std::size_t index_ = kNone;
-  Frame a_, b_;
-};
 
 // Top of the colour scale: what one ball in a hundred exceeds, so that a single impact does not darken the film.
 double scale_top(const io::RunReader& run, render::Colour colour) {

@@ -121,6 +121,7 @@ mkdir stills
 refused 2 'stills' motion.h5 "$tumble" analyse stills -o motion.h5
 refused 2 'size' film.mp4 "$tumble" render good.h5 -o film.mp4 --size 1281x720
 refused 2 'overlay' film.mp4 "$tumble" render good.h5 -o film.mp4 --overlay toes
+refused 2 'theme' film.mp4 "$tumble" render good.h5 -o film.mp4 --theme cinema
 refused 2 'preset\|fastest' film.mp4 "$tumble" render good.h5 -o film.mp4 --preset fastest
 refused 2 'avi' film.avi "$tumble" render good.h5 -o film.avi
 "$tumble" render good.h5 -o good.mp4 --quiet --size 640x360 || fail "the good film"

@@ -40,6 +40,9 @@ done_by analyse run.h5 -o other.h5 --csv tables --force
 done_by render run.h5 -o pictures/ --size 320x180
 refused 'frame_000000.png: exists' render run.h5 -o pictures --size 320x180
 done_by render run.h5 -o pictures --size 320x180 --force
+done_by render run.h5 -o filmed/ --size 320x180 --theme film --look-seed 3 --threads 1
+done_by render run.h5 -o filmed_again/ --size 320x180 --theme film --look-seed 3 --threads 2
+cmp filmed/frame_000001.png filmed_again/frame_000001.png || fail "a filmed picture depends on the number of threads"
 refused 'size' render run.h5 -o film.mp4 --size 4294968576x720 # 2^32 + 1280
 
 for key in torque_N_m torque_closure_N_m; do
