@@ -44,7 +44,7 @@ TEST(Assignment, IsOptimalOnRandomTables) {
 }
 
 struct Scene {
-  std::vector<std::vector<Sighting>> frames;
+  std::vector<SeenFrame> frames;
   std::vector<std::vector<int>> truth;  // whose each sighting is
 };
 
@@ -52,8 +52,8 @@ int count_switches(const Scene& scene) {
   std::map<int, int> last;
   int switches = 0;
   for (std::size_t f = 0; f < scene.frames.size(); ++f)
-    for (std::size_t k = 0; k < scene.frames[f].size(); ++k) {
-      const int path = scene.frames[f][k].track;
+    for (std::size_t k = 0; k < scene.frames[f].balls.size(); ++k) {
+      const int path = scene.frames[f].balls[k].track;
       if (path < 0) continue;
       const auto known = last.find(path);
       if (known != last.end() && known->second != scene.truth[f][k]) ++switches;
@@ -76,7 +76,7 @@ Scene crossing_paths(std::uint64_t seed) {
       s.x = x + random.uniform(-0.3, 0.3);
       s.y = y + random.uniform(-0.3, 0.3);
       s.radius = 12;
-      s.score = 0.4;
+      s.score = 0.8;
       here.push_back(s);
       whose.push_back(id);
     };
@@ -88,7 +88,7 @@ Scene crossing_paths(std::uint64_t seed) {
       const double side = k % 2 == 0 ? 1 : -1, t = f;
       add(100 + k, side * (-160 + 8.0 * t), 40 * k - 60 + 5 * t - 0.5 * g * t * t);
     }
-    scene.frames.push_back(here);
+    scene.frames.push_back({static_cast<double>(f), here});
     scene.truth.push_back(whose);
   }
   return scene;
@@ -99,9 +99,7 @@ TEST(Tracking, KeepsIdentitiesOfCarriedAndCrossingBalls) {
     Scene scene = crossing_paths(seed);
     MotionModel model;
     model.turn = 0.02;
-    model.gravity = 0.25;
-    model.tip_radius = 260;
-    model.birth_score = 0.3;
+    model.gravity_y = -0.25;
     const int paths = link_sightings(scene.frames, model);
     EXPECT_EQ(count_switches(scene), 0);
     EXPECT_LE(paths, 27);  // 26 balls; at most one path broken by a run of unseen frames
@@ -109,7 +107,7 @@ TEST(Tracking, KeepsIdentitiesOfCarriedAndCrossingBalls) {
 }
 
 TEST(Tracking, DropsWhatStandsStillWhileTheMillTurns) {
-  std::vector<std::vector<Sighting>> frames(60);
+  std::vector<SeenFrame> frames(60);
   for (int f = 0; f < 60; ++f) {
     Sighting still, carried;
     still.x = 100;
@@ -117,31 +115,30 @@ TEST(Tracking, DropsWhatStandsStillWhileTheMillTurns) {
     carried.x = 200 * std::cos(0.03 * f);
     carried.y = 200 * std::sin(0.03 * f);
     still.radius = carried.radius = 10;
-    still.score = carried.score = 0.5;
-    frames[f] = {still, carried};
+    still.score = carried.score = 0.8;
+    frames[f] = {static_cast<double>(f), {still, carried}};
   }
   MotionModel model;
   model.turn = 0.03;
-  model.tip_radius = 230;
-  model.birth_score = 0.3;
   EXPECT_EQ(link_sightings(frames, model), 1);
-  EXPECT_EQ(frames[30][0].track, -1);
-  EXPECT_EQ(frames[30][1].track, 0);
+  EXPECT_EQ(frames[30].balls[0].track, -1);
+  EXPECT_EQ(frames[30].balls[1].track, 0);
 }
 
 TEST(Tracking, VelocityOfAParabolaIsExact) {
-  std::vector<std::vector<Sighting>> frames(9);
+  std::vector<SeenFrame> frames(9);
   for (int f = 0; f < 9; ++f) {
     Sighting s;
     s.x = 3.0 * f;
     s.y = 2.0 * f - 0.5 * 0.4 * f * f;
     s.track = 0;
-    frames[f] = {s};
+    s.time = f;
+    frames[f] = {static_cast<double>(f), {s}};
   }
-  smooth_velocities(frames, 5);
+  smooth_velocities(frames, 4);
   for (int f = 0; f < 9; ++f) {
-    EXPECT_NEAR(frames[f][0].vx, 3.0, 1e-9);
-    EXPECT_NEAR(frames[f][0].vy, 2.0 - 0.4 * f, 1e-9);
+    EXPECT_NEAR(frames[f].balls[0].vx, 3.0, 1e-9);
+    EXPECT_NEAR(frames[f].balls[0].vy, 2.0 - 0.4 * f, 1e-9);
   }
 }
 
