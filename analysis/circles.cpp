@@ -17,7 +17,7 @@ struct EdgePixel {
   float u, v, du, dv, weight;  // place, unit gradient, strength
 };
 
-std::vector<EdgePixel> strong_edges(const cv::Mat& grey) {
+std::vector<EdgePixel> strong_edges(const cv::Mat& grey, const cv::Mat& where) {
   cv::Mat smooth, gu, gv;
   cv::GaussianBlur(grey, smooth, {}, 1.5);
   cv::Sobel(smooth, gu, CV_32F, 1, 0, 3, 0.125);
@@ -27,7 +27,9 @@ std::vector<EdgePixel> strong_edges(const cv::Mat& grey) {
   // Threshold: the strongest tenth of the pixels, but never plain noise.
   std::vector<float> sample;
   for (int v = 0; v < magnitude.rows; v += 3)
-    for (int u = 0; u < magnitude.cols; u += 3) sample.push_back(magnitude.at<float>(v, u));
+    for (int u = 0; u < magnitude.cols; u += 3)
+      if (where.empty() || where.at<uchar>(v, u) != 0) sample.push_back(magnitude.at<float>(v, u));
+  if (sample.empty()) return {};
   auto tenth = sample.begin() + static_cast<std::ptrdiff_t>(0.9 * static_cast<double>(sample.size()));
   std::nth_element(sample.begin(), tenth, sample.end());
   const float threshold = std::max(0.4f, *tenth);
@@ -35,7 +37,7 @@ std::vector<EdgePixel> strong_edges(const cv::Mat& grey) {
   for (int v = 2; v < magnitude.rows - 2; ++v) {
     for (int u = 2; u < magnitude.cols - 2; ++u) {
       const float m = magnitude.at<float>(v, u);
-      if (m < threshold) continue;
+      if (m < threshold || (!where.empty() && where.at<uchar>(v, u) == 0)) continue;
       edges.push_back({static_cast<float>(u), static_cast<float>(v), gu.at<float>(v, u) / m, gv.at<float>(v, u) / m,
                        std::min(m, 4 * threshold)});  // capped: one bright sign must not outvote a drum
     }
@@ -225,10 +227,22 @@ Circle fit_circle(const std::vector<cv::Point2d>& points, const std::vector<doub
   return {x + mu, y + mv, r2 > 0 ? std::sqrt(r2) : 0.0};
 }
 
+cv::Point2d centre_of_circles(const std::vector<cv::Mat>& greys, const cv::Mat& where, double least_radius) {
+  std::vector<EdgePixel> edges;
+  for (const cv::Mat& picture : greys) {
+    cv::Mat grey;
+    picture.convertTo(grey, CV_32F);
+    const auto more = strong_edges(grey, where);
+    edges.insert(edges.end(), more.begin(), more.end());
+  }
+  if (edges.size() < 100) return {std::nan(""), std::nan("")};
+  return refine_centre(edges, vote_for_centre(edges, greys[0].size(), least_radius), least_radius);
+}
+
 std::vector<RingEdge> find_concentric_circles(const cv::Mat& picture, double least_radius) {
   cv::Mat grey;
   picture.convertTo(grey, CV_32F);
-  const auto edges = strong_edges(grey);
+  const auto edges = strong_edges(grey, {});
   if (edges.size() < 100) return {};
   cv::Point2d centre = vote_for_centre(edges, grey.size(), least_radius);
   centre = refine_centre(edges, centre, least_radius);

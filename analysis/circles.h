@@ -19,6 +19,10 @@ struct RingEdge {  // one of the circles that a round thing seen from the front 
 // `least_radius` are not looked for.
 std::vector<RingEdge> find_concentric_circles(const cv::Mat& grey, double least_radius);
 
+// Where the lines along the gradients of pictures of one size meet, sub-pixel; only those of pixels in `where` (8 bit,
+// or empty for all). NaN where there are hardly any.
+cv::Point2d centre_of_circles(const std::vector<cv::Mat>& greys, const cv::Mat& where, double least_radius);
+
 // Algebraic circle fit (Taubin 1991) with weights; radius 0 where the points do not tell.
 Circle fit_circle(const std::vector<cv::Point2d>& points, const std::vector<double>& weights);
 

@@ -1,0 +1,308 @@
+#include "analysis/drum_calibration.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+
+#include "analysis/drum_pose.h"
+#include "analysis/drum_rings.h"
+#include "analysis/drum_scale.h"
+#include "analysis/drum_turn.h"
+#include "analysis/film_reader.h"
+#include "core/error.h"
+#include "core/units.h"
+
+namespace tumble::analysis {
+namespace {
+
+constexpr int kMostFrames = 300;     // looked at
+constexpr int kWidestPicture = 640;  // after reduction: 300 of them are some 70 MB
+constexpr int kPoseFrames = 100;     // of them, for the camera
+constexpr std::size_t kFewestFrames = 8, kFewestSightings = 400;
+constexpr double kLeastTurn = 0.1;   // of the drum during the film, to tell what turns from what stands still [rad]
+constexpr double kBorder = 10;       // within which an edge belongs to the textured surface [px]
+constexpr double kRingAlike = 0.1;   // by which neighbours on an edge err alike [px]
+constexpr double kFinestBlur = 0.7;  // [px]
+
+struct Sample {
+  std::vector<cv::Mat> greys;
+  cv::Mat mean, deviation;
+  cv::Size film_size;
+  int reduced = 1;
+  double fps = kNotGiven;
+};
+
+Sample read_sample(const std::string& path, const Progress& progress) {
+  Sample sample;
+  FilmReader film(path);
+  sample.fps = film.frames_per_second();
+  sample.film_size = film.size();
+  sample.reduced = std::max(1, (film.size().width + kWidestPicture - 1) / kWidestPicture);
+  cv::Mat picture, sum, squares;
+  while (static_cast<int>(sample.greys.size()) < kMostFrames && film.next(picture)) {
+    cv::Mat grey = reduced_grey(picture, sample.reduced);
+    if (sum.empty()) {
+      sum = cv::Mat::zeros(grey.size(), CV_32F);
+      squares = cv::Mat::zeros(grey.size(), CV_32F);
+    }
+    cv::accumulate(grey, sum);
+    cv::accumulateSquare(grey, squares);
+    sample.greys.push_back(grey);
+    report(progress, 0.5 * static_cast<double>(sample.greys.size()) / kMostFrames);
+  }
+  const double n = static_cast<double>(sample.greys.size());
+  sample.mean = sum / n;
+  cv::Mat variance = squares / n - sample.mean.mul(sample.mean);
+  cv::sqrt(cv::max(variance, 0), sample.deviation);
+  return sample;
+}
+
+// The drum's angles as far as the frontal view tells them.
+DrumTurn first_turn(const Sample& sample, const DrumPose& pose, const PolarGrid& grid, double expected_step) {
+  const Unroller unroll(pose, grid);
+  std::vector<cv::Mat> strips;
+  for (const cv::Mat& grey : sample.greys) strips.push_back(unroll(grey));
+  const StillPart still = find_still_part(strips);
+  const DrumTexture blank(unroll, still, 1.5);
+  std::vector<RoundSpectrum> spectra;
+  for (const cv::Mat& s : strips) spectra.emplace_back(blank.moving_part(s));
+  return follow_turn(std::move(spectra), expected_step);
+}
+
+// Where the texture was found, and the edges that go round with it.
+DrumSightings look(const DrumReader& reader, const std::vector<double>& angles, const cv::Mat& mean, int margin,
+                   double reach) {
+  DrumSightings seen;
+  const DrumTexture& texture = reader.texture();
+  double innermost = 1e9;
+  for (int k = 0; k < texture.pieces(); ++k) {
+    seen.pieces.push_back(texture.piece(k));
+    if (seen.pieces.back().layer == 0) innermost = std::min(innermost, seen.pieces.back().radius);
+  }
+  if (seen.pieces.empty()) return seen;
+  seen.layers = texture.surface(0) + 1;
+  for (std::size_t t = 0; t < angles.size(); ++t) {
+    const auto found = texture.find(reader.strips()[t], angles[t]);
+    for (int k = 0; k < texture.pieces(); ++k) {
+      const auto& f = found[static_cast<std::size_t>(k)];
+      if (f.seen) seen.sightings.push_back({static_cast<int>(t), k, texture.pixel_of(k, angles[t], f), f.weight});
+    }
+  }
+  // Edges of the outermost surface: it is the plane z = 0.
+  const PolarGrid& grid = reader.unroll().grid();
+  const auto rings =
+      find_rings(mean, reader.unroll().pose(), innermost - margin - reach - kBorder, grid.radius(grid.rows - 1), reach);
+  const auto clear = [](const RingEdgePoints& r) { return r.coverage > 0.6 && std::abs(r.strength) > 1.5; };
+  double smoothest = 1e9;
+  for (const RingEdgePoints& r : rings)
+    if (clear(r)) smoothest = std::min(smoothest, r.roughness);
+  for (const RingEdgePoints& r : rings)  // what is less of a circle is an outline before a changing ground, or deeper
+    if (clear(r) && r.roughness < 2 * smoothest + 0.03)
+      seen.rings.push_back({r.points, r.radius,
+                            std::max(kRingAlike, r.roughness) * std::sqrt(static_cast<double>(r.points.size()) / 12)});
+  return seen;
+}
+
+struct Camera {
+  bool found = false;
+  PoseFit fit;
+  std::vector<std::size_t> frames;  // those whose angles the fit holds
+};
+
+Camera fit_camera(const Sample& sample, const DrumPose& start, const PolarGrid& grid, const DrumTurn& turn,
+                  const Progress& progress) {
+  Camera camera;
+  const std::size_t n = sample.greys.size(), count = std::min<std::size_t>(n, kPoseFrames);
+  std::vector<cv::Mat> greys;
+  camera.fit.pose = start;
+  for (std::size_t i = 0; i < count; ++i) {
+    camera.frames.push_back(i * n / count);
+    greys.push_back(sample.greys[camera.frames.back()]);
+    camera.fit.angles.push_back(turn.angles[camera.frames.back()]);
+  }
+  PosePrior prior = usual_camera(sample.mean.size(), grid.radius(grid.rows));
+  prior.deviation[DrumPose::kTwist] = std::abs(turn.step) + 1e-4;  // a picture is read out within its own time
+  struct Stage {
+    double blur;
+    int margin;
+    double reach;  // within which the edges of rings are looked for [px]
+  };
+  constexpr std::array<Stage, 6> kStages{
+      {{3.0, 4, 4.0}, {2.0, 3, 2.5}, {1.2, 2, 2.0}, {0.7, 2, 1.5}, {0.7, 2, 1.5}, {0.7, 2, 1.5}}};
+  double done = 0.5;
+  for (const Stage& stage : kStages) {
+    const DrumReader reader(camera.fit.pose, grid, sample.reduced, greys, camera.fit.angles, stage.blur, stage.margin);
+    const DrumSightings seen = look(reader, camera.fit.angles, sample.mean, stage.margin, stage.reach);
+    if (seen.sightings.size() < kFewestSightings) return camera;
+    camera.fit = fit_pose(seen, camera.fit.pose, camera.fit.angles, camera.fit.depths, prior);
+    report(progress, done += 0.06);
+  }
+  camera.found = true;
+  return camera;
+}
+
+// Commonest turn from picture to picture: the slope of the angles against the number of such turns, which repeated and
+// missing pictures make 0 or 2.
+Estimate turn_per_frame(const std::vector<DrumAngle>& angles, double step) {
+  std::vector<double> count{0.0};
+  for (std::size_t t = 1; t < angles.size(); ++t)
+    count.push_back(count.back() + std::round((angles[t].angle - angles[t - 1].angle) / step));
+  const double n = static_cast<double>(count.size());
+  double mx = 0, my = 0, xx = 0, xy = 0;
+  for (std::size_t t = 0; t < count.size(); ++t) {
+    mx += count[t] / n;
+    my += angles[t].angle / n;
+  }
+  for (std::size_t t = 0; t < count.size(); ++t) {
+    xx += (count[t] - mx) * (count[t] - mx);
+    xy += (count[t] - mx) * (angles[t].angle - my);
+  }
+  if (!(xx > 0)) return {step, kNotGiven};
+  const double slope = xy / xx;
+  double squares = 0, neighbours = 0, last = 0;
+  for (std::size_t t = 0; t < count.size(); ++t) {
+    const double rest = angles[t].angle - my - slope * (count[t] - mx);
+    squares += rest * rest;
+    if (t > 0) neighbours += rest * last;
+    last = rest;
+  }
+  const double alike = std::clamp(squares > 0 ? neighbours / squares : 0.0, 0.0, 0.98);  // of neighbours
+  return {slope, std::sqrt(squares / std::max(1.0, n - 2) / xx * (1 + alike) / (1 - alike))};
+}
+
+// RMS error of the places that pixels of the glass are given, at a given scale, from the camera's covariance.
+double place_error(const PoseFit& fit, double shell) {
+  const MillCamera camera = fit.pose.camera();
+  std::vector<Eigen::Vector2d> places;
+  std::vector<cv::Point2d> pixels;
+  for (double r : {0.2, 0.5, 0.75, 0.95})
+    for (int k = 0; k < 12; ++k) {
+      places.emplace_back(r * shell * std::cos(k * kPi / 6), r * shell * std::sin(k * kPi / 6));
+      pixels.push_back(picture_of(camera, {places.back().x(), places.back().y(), 0}));
+    }
+  const Eigen::Index n = static_cast<Eigen::Index>(places.size());
+  Eigen::MatrixXd by(2 * n, static_cast<Eigen::Index>(DrumPose::kCount));
+  for (int p = 0; p < DrumPose::kCount; ++p) {
+    DrumPose moved = fit.pose;
+    const double step = 0.1 * std::sqrt(fit.covariance(p, p));
+    moved.numbers[p] += step;
+    const MillCamera other = moved.camera();
+    // Scale and turn are nobody's fault: the places move by what a similarity about the axis cannot undo.
+    Eigen::VectorXd shift(2 * n);
+    double along = 0, across = 0, total = 0;
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const auto k = static_cast<std::size_t>(i);
+      const Eigen::Vector2d d = mill_place_at(other, pixels[k], 0) - places[k];
+      shift.segment<2>(2 * i) = d;
+      const double w = std::pow(places[k].norm() / shell, 8);  // the scale is set near the shell
+      along += w * d.dot(places[k]);
+      across += w * (places[k].x() * d.y() - places[k].y() * d.x());
+      total += w * places[k].squaredNorm();
+    }
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const Eigen::Vector2d& x = places[static_cast<std::size_t>(i)];
+      shift.segment<2>(2 * i) -= (along * x + across * Eigen::Vector2d(-x.y(), x.x())) / total;
+    }
+    by.col(p) = shift / step;
+  }
+  return std::sqrt((by * fit.covariance * by.transpose()).trace() / static_cast<double>(n));
+}
+
+}  // namespace
+
+DrumView calibrate_drum(const std::string& film, const Config& known, const Progress& progress) {
+  DrumView view;
+  const Sample sample = read_sample(film, progress);
+  const auto refuse = [&](const std::string& why) {
+    view.found = false;
+    view.caveats.push_back(why);
+    return view;
+  };
+  if (sample.greys.size() < kFewestFrames) return refuse("the film is too short to see a drum turn");
+  const TurningDisc disc = find_turning_disc(sample.mean, sample.deviation);
+  if (!disc.found) return refuse("no turning drum was found in the film");
+  PolarGrid grid;
+  grid.inner = std::round(0.70 * disc.radius);
+  grid.rows = static_cast<int>(std::ceil(0.37 * disc.radius / 6)) * 6;
+  grid.columns = disc.radius < 230 ? 1024 : 2048;
+  const DrumPose start = frontal_pose(sample.mean.size(), disc.axis);
+  const DrumTurn turn = first_turn(sample, start, grid, speed_rpm(known.mill) * 2 * kPi / 60 / sample.fps);
+  if (!turn.found) return refuse("nothing in the film turns about a common axis");
+  if (std::abs(turn.angles.back() - turn.angles.front()) < kLeastTurn)
+    return refuse("the drum hardly turns while it is filmed");
+  const Camera camera = fit_camera(sample, start, grid, turn, progress);
+  if (!camera.found) return refuse("too little of the drum shows marks that turn with it");
+  const DrumPose& pose = camera.fit.pose;
+
+  // The drum's angle in every picture, by what the fitted camera and angles show of it.
+  std::vector<cv::Mat> greys;
+  for (std::size_t i : camera.frames) greys.push_back(sample.greys[i]);
+  auto reader = std::make_shared<DrumReader>(pose, grid, sample.reduced, greys, camera.fit.angles, kFinestBlur, 2);
+  double offset = camera.fit.angles[0] - turn.angles[0];
+  for (std::size_t t = 0; t < sample.greys.size(); ++t) {
+    view.angles.push_back(reader->angle_in(reader->unroll()(sample.greys[t]), turn.angles[t] + offset));
+    offset = view.angles.back().angle - turn.angles[t];
+  }
+  view.turn_per_frame = turn_per_frame(view.angles, turn.step);
+  view.readout = {pose.twist() / turn.step,
+                  std::sqrt(camera.fit.covariance(DrumPose::kTwist, DrumPose::kTwist)) / std::abs(turn.step)};
+
+  // Scale: which circle is the shell.
+  const auto rings = find_rings(sample.mean, pose, grid.inner, grid.radius(grid.rows - 1), 1.5);
+  const RadialProfile profile = radial_profile(*reader);
+  const double mill_radius = 0.5 * known.mill.diameter;
+  double ball = kNotGiven;
+  for (const BallClass& c : known.charge.balls)
+    if (c.radius > 0 && !(c.radius > ball)) ball = c.radius;
+  const MillCamera pixels = pose.camera();
+  ShellGuess shell = find_shell(profile, grid, rings, pixels.translation.norm(), ball / mill_radius);
+  view.scale_from = shell.on_ring ? RingKind::kShell : RingKind::kUnknown;
+  if (shell.radius == 0) {
+    // No charge to be seen: the innermost edge of the textured surface, if it has one.
+    const RingEdgePoints* bore = nullptr;
+    for (const RingEdgePoints& r : rings)
+      if (r.coverage > 0.6 && (bore == nullptr || std::abs(r.strength) > std::abs(bore->strength))) bore = &r;
+    shell.radius = bore != nullptr ? bore->radius : 0.87 * disc.radius;
+    shell.deviation = bore != nullptr ? 0.04 : 0.1;
+    view.scale_from = bore != nullptr ? RingKind::kBore : RingKind::kOuterRim;
+    view.caveats.push_back(
+        "no charge was seen to reach the shell: the scale is a guess from the strongest edge round the drum");
+  }
+  const double unit = (mill_radius > 0 ? mill_radius : 1.0) / shell.radius;  // of a pixel at the origin
+  view.scale = {1.0, shell.deviation};
+  view.camera = with_lengths_times(for_enlarged_pictures(pixels, sample.reduced), unit);
+  view.camera.width = sample.film_size.width;
+  view.camera.height = sample.film_size.height;
+  view.place_error = unit * place_error(camera.fit, shell.radius);
+  for (const RingEdgePoints& r : rings)
+    view.rings.push_back({r.radius * unit, r.strength, r.coverage, RingKind::kUnknown});
+
+  const auto error = [&](int p) { return std::sqrt(camera.fit.covariance(p, p)); };
+  view.focal = {view.camera.focal, view.camera.focal * error(DrumPose::kLogFocal)};
+  view.k1 = {view.camera.k1, error(DrumPose::kK1)};
+  const cv::Point2d axis = picture_of(view.camera, Eigen::Vector3d::Zero());
+  const auto sum_error = [&](int p, int q) {
+    return sample.reduced * std::sqrt(std::max(0.0, camera.fit.covariance(p, p) + camera.fit.covariance(q, q) +
+                                                        2 * camera.fit.covariance(p, q)));
+  };
+  view.centre_u = {axis.x, sum_error(DrumPose::kOriginU, DrumPose::kCentreU)};
+  view.centre_v = {axis.y, sum_error(DrumPose::kOriginV, DrumPose::kCentreV)};
+  view.obliqueness = {obliqueness(view.camera), std::hypot(error(DrumPose::kTiltX), error(DrumPose::kTiltY))};
+
+  const double tip = known.mill.lifters.height > 0 && mill_radius > 0
+                         ? shell.radius * (1 - known.mill.lifters.height / mill_radius)
+                         : 0.93 * shell.radius;
+  view.lifter_count =
+      known.mill.lifters.count > 0 ? known.mill.lifters.count : count_lifters(*reader, tip, 0.99 * shell.radius);
+  view.lifter_angle = lifter_angle(*reader, reader->strips(), camera.fit.angles, view.lifter_count, tip, shell.radius);
+  reader->forget_strips();
+  view.reader = reader;
+  if (disc.moving_besides > 0.5)
+    view.caveats.push_back("much moves outside of the drum: if the film shows two mills, crop it to one");
+  view.found = true;
+  report(progress, 1);
+  return view;
+}
+
+}  // namespace tumble::analysis

@@ -1,0 +1,78 @@
+#include "analysis/drum_reader.h"
+
+#include <algorithm>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+
+#include "core/units.h"
+
+namespace tumble::analysis {
+
+cv::Mat reduced_grey(const cv::Mat& bgr, int times) {
+  cv::Mat small, grey;
+  if (times > 1)
+    cv::resize(bgr, small, {bgr.cols / times, bgr.rows / times}, 0, 0, cv::INTER_AREA);
+  else
+    small = bgr;
+  cv::cvtColor(small, grey, cv::COLOR_BGR2GRAY);
+  return grey;
+}
+
+DrumReader::DrumReader(const DrumPose& pose, const PolarGrid& grid, int reduced, const std::vector<cv::Mat>& greys,
+                       const std::vector<double>& angles, double blur, int margin)
+    : unroll_(pose, grid), reduced_(reduced) {
+  for (const cv::Mat& grey : greys) strips_.push_back(unroll_(grey));
+  still_ = std::make_unique<StillPart>(find_still_part(strips_));
+  texture_ = std::make_unique<DrumTexture>(unroll_, *still_, blur);
+  for (std::size_t t = 0; t < strips_.size(); ++t) texture_->add(strips_[t], angles[t]);
+  texture_->finish(margin);
+  pattern_ = RoundSpectrum(texture_->pattern());
+}
+
+DrumAngle DrumReader::operator()(const cv::Mat& bgr, double expected) const {
+  return angle_in(unroll_(reduced_grey(bgr, reduced_)), expected);
+}
+
+DrumAngle DrumReader::angle_in(const cv::Mat& strip, double expected) const {
+  const double rough = angle_of(pattern_, RoundSpectrum(texture_->moving_part(strip)), expected);
+  const double pitch = unroll_.grid().pitch();
+  DrumAngle result{rough, kNotGiven, 0};
+  const auto found = texture_->find(strip, rough);
+  struct Say {
+    double turn, weight;
+  };
+  std::vector<Say> says;
+  for (int k = 0; k < texture_->pieces(); ++k) {
+    const auto& f = found[static_cast<std::size_t>(k)];
+    if (!f.seen) continue;
+    const double r = texture_->piece(k).radius;
+    // Across alone, whatever the shift along the radius: the camera is known by now, but a layer's depth need not be.
+    says.push_back({f.across / r, (f.weight(1, 1) - f.weight(0, 1) * f.weight(1, 0) / f.weight(0, 0)) * r * r});
+  }
+  if (says.size() < 4) return result;
+  double middle = 0, scale = 1e300;
+  std::vector<double> misses(says.size());
+  for (int round = 0; round < 8; ++round) {
+    double sum = 0, weights = 0;
+    for (const Say& s : says) {
+      const double k = (s.turn - middle) / (4 * scale), w = std::abs(k) < 1 ? s.weight * (1 - k * k) * (1 - k * k) : 0;
+      sum += w * s.turn;
+      weights += w;
+    }
+    if (!(weights > 0)) return result;
+    middle = sum / weights;
+    for (std::size_t i = 0; i < says.size(); ++i) misses[i] = std::abs(says[i].turn - middle);
+    const auto half = misses.begin() + static_cast<std::ptrdiff_t>(misses.size() / 2);
+    std::nth_element(misses.begin(), half, misses.end());
+    scale = std::max(1e-6, 1.48 * *half);
+    result.pieces = static_cast<int>(
+        std::count_if(says.begin(), says.end(), [&](const Say& s) { return std::abs(s.turn - middle) < 4 * scale; }));
+    // Pieces of a band overlap by half: neighbours do not err independently.
+    result.error = scale * std::sqrt(2.0 / std::max(1, result.pieces));
+  }
+  // The texture was looked for at whole columns.
+  result.angle = static_cast<double>(std::lround(rough / pitch)) * pitch + middle;
+  return result;
+}
+
+}  // namespace tumble::analysis

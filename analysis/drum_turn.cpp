@@ -1,0 +1,232 @@
+#include "analysis/drum_turn.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/config.h"
+#include "core/units.h"
+
+namespace tumble::analysis {
+namespace {
+
+constexpr int kGroup = 6;            // rows taken together
+constexpr int kLeastOrder = 2;       // light that changes is of the lowest orders
+constexpr double kGreyNoise = 0.5;   // of a group's mean [grey levels]: bands in which nothing moves have no say
+constexpr double kNearEqual = 0.85;  // of the best match
+
+struct Peak {
+  double shift = 0, height = -1;  // [columns], nearest to zero
+};
+
+double value_at(const std::vector<float>& match, long column) {
+  const long n = static_cast<long>(match.size());
+  return match[static_cast<std::size_t>(((column % n) + n) % n)];
+}
+
+Peak refined(const std::vector<float>& match, long column) {
+  const double l = value_at(match, column - 1), m = value_at(match, column), h = value_at(match, column + 1);
+  const double curve = l - 2 * m + h, aside = curve < 0 ? std::clamp(0.5 * (l - h) / curve, -0.5, 0.5) : 0.0;
+  return {static_cast<double>(column) + aside, m - 0.25 * (l - h) * aside};
+}
+
+Peak best_within(const std::vector<float>& match, double middle, double reach) {
+  Peak best;
+  long at = std::lround(middle);
+  for (long c = std::lround(middle - reach); c <= std::lround(middle + reach); ++c)
+    if (value_at(match, c) > best.height) {
+      best.height = value_at(match, c);
+      at = c;
+    }
+  return refined(match, at);
+}
+
+std::vector<Peak> peaks_of(const std::vector<float>& match, double least) {
+  std::vector<Peak> peaks;
+  const long n = static_cast<long>(match.size());
+  for (long c = -n / 2; c < n / 2; ++c)
+    if (value_at(match, c) >= least && value_at(match, c) > value_at(match, c - 1) &&
+        value_at(match, c) >= value_at(match, c + 1))
+      peaks.push_back(refined(match, c));
+  return peaks;
+}
+
+}  // namespace
+
+RoundSpectrum::RoundSpectrum(const cv::Mat& moving) {
+  const int bands = moving.rows / kGroup;
+  cv::Mat rows(bands, moving.cols, CV_32F);
+  for (int b = 0; b < bands; ++b)
+    cv::reduce(moving.rowRange(b * kGroup, (b + 1) * kGroup), rows.row(b), 0, cv::REDUCE_AVG, CV_32F);
+  for (int b = 0; b < bands; ++b) {
+    cv::Mat row = rows.row(b);
+    const double deviation = cv::norm(row) / std::sqrt(row.cols);
+    row /= std::sqrt(deviation * deviation + kGreyNoise * kGreyNoise) * std::sqrt(bands * row.cols);
+  }
+  cv::dft(rows, orders_, cv::DFT_ROWS | cv::DFT_COMPLEX_OUTPUT);
+  const int most = moving.cols / 6;
+  for (int b = 0; b < bands; ++b) {
+    auto* o = orders_.ptr<cv::Vec2f>(b);
+    for (int m = 0; m < moving.cols; ++m)
+      if (std::min(m, moving.cols - m) < kLeastOrder || std::min(m, moving.cols - m) > most) o[m] = {0, 0};
+  }
+}
+
+std::vector<float> RoundSpectrum::match(const RoundSpectrum& other) const {
+  cv::Mat product, sum, back;
+  cv::mulSpectrums(other.orders_, orders_, product, cv::DFT_ROWS, true);
+  cv::reduce(product, sum, 0, cv::REDUCE_SUM);
+  cv::dft(sum, back, cv::DFT_INVERSE | cv::DFT_REAL_OUTPUT);
+  std::vector<float> result(static_cast<std::size_t>(back.cols));
+  const double scale = 1.0 / (std::sqrt(power() * other.power()) + 1e-9);
+  for (int k = 0; k < back.cols; ++k)
+    result[static_cast<std::size_t>(k)] = static_cast<float>(back.at<float>(0, k) * scale);
+  return result;
+}
+
+double RoundSpectrum::power() const { return cv::norm(orders_, cv::NORM_L2SQR); }
+
+void RoundSpectrum::add_turned_back(const RoundSpectrum& other, double angle) {
+  if (orders_.empty()) orders_ = cv::Mat::zeros(other.orders_.size(), CV_32FC2);
+  // Turned forwards by `angle`, order m carries exp(-i m angle).
+  const int n = orders_.cols, most = n / 6;
+  for (int m = kLeastOrder; m <= most; ++m) {
+    const float c = static_cast<float>(std::cos(m * angle)), s = static_cast<float>(std::sin(m * angle));
+    for (int b = 0; b < orders_.rows; ++b) {
+      const cv::Vec2f f = other.orders_.at<cv::Vec2f>(b, m);
+      cv::Vec2f& o = orders_.at<cv::Vec2f>(b, m);
+      o += cv::Vec2f(f[0] * c - f[1] * s, f[0] * s + f[1] * c);
+      orders_.at<cv::Vec2f>(b, n - m) = {o[0], -o[1]};
+    }
+  }
+}
+
+void RoundSpectrum::weigh_bands(const std::vector<double>& weights) {
+  for (int b = 0; b < orders_.rows; ++b) {
+    cv::Mat row = orders_.row(b);
+    row *= weights[static_cast<std::size_t>(b)];
+  }
+}
+
+std::vector<double> RoundSpectrum::band_powers() const {
+  std::vector<double> powers;
+  for (int b = 0; b < orders_.rows; ++b) powers.push_back(cv::norm(orders_.row(b), cv::NORM_L2SQR));
+  return powers;
+}
+
+namespace {
+
+// Commonest turn between neighbours [columns], from all pairs at once.
+double commonest_turn(const std::vector<RoundSpectrum>& pictures, double expected_columns) {
+  std::vector<float> all(static_cast<std::size_t>(pictures[0].orders().cols), 0.0F);
+  for (std::size_t t = 0; t + 1 < pictures.size(); ++t) {
+    const auto pair = pictures[t].match(pictures[t + 1]);
+    for (std::size_t k = 0; k < all.size(); ++k) all[k] += pair[k] / static_cast<float>(pictures.size() - 1);
+  }
+  const double most = *std::max_element(all.begin(), all.end());
+  if (most < 0.05) return kNotGiven;
+  // Of near equals the turn of the expected size, else the slowest.
+  double least_miss = 1e300, chosen = kNotGiven;
+  for (const Peak& p : peaks_of(all, kNearEqual * most)) {
+    const double miss =
+        std::isnan(expected_columns) ? std::abs(p.shift) : std::abs(std::abs(p.shift) - expected_columns);
+    if (miss >= least_miss) continue;
+    least_miss = miss;
+    chosen = p.shift;
+  }
+  return chosen;
+}
+
+double median_step(const std::vector<double>& angles) {
+  std::vector<double> steps;
+  for (std::size_t t = 0; t + 1 < angles.size(); ++t) steps.push_back(angles[t + 1] - angles[t]);
+  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
+  std::nth_element(steps.begin(), middle, steps.end());
+  return *middle;
+}
+
+// Picture by picture against the mean of those before, turned back: the charge washes out of it and errors do not add
+// up.
+std::vector<double> follow(const std::vector<RoundSpectrum>& pictures, double step) {
+  const double columns = pictures[0].orders().cols, pitch = 2 * kPi / columns;
+  std::vector<double> angles{0.0};
+  RoundSpectrum mean;
+  mean.add_turned_back(pictures[0], 0);
+  for (std::size_t t = 1; t < pictures.size(); ++t) {
+    const auto match = mean.match(pictures[t]);
+    const double last = angles.back() / pitch, reach = 0.4 * std::abs(step) + 2;
+    // As usual, a repeated picture, one or two missing; anything else must match much better to be believed.
+    Peak best = best_within(match, last + step, reach);
+    for (double times : {0.0, 2.0, 3.0}) {
+      const Peak other = best_within(match, last + times * step, reach);
+      if (other.height > 1.1 * best.height + 0.01) best = other;
+    }
+    angles.push_back(best.shift * pitch);
+    mean.add_turned_back(pictures[t], angles.back());
+  }
+  return angles;
+}
+
+}  // namespace
+
+DrumTurn follow_turn(std::vector<RoundSpectrum> pictures, double expected_step) {
+  DrumTurn turn;
+  const std::size_t n = pictures.size();
+  if (n < 3) return turn;
+  const double pitch = 2 * kPi / pictures[0].orders().cols;
+  double step = commonest_turn(pictures, std::abs(expected_step) / pitch);
+  if (std::isnan(step)) return turn;
+  for (int round = 0; round < 5; ++round) {
+    if (round < 2) {
+      turn.angles = follow(pictures, step);
+    } else {
+      const double first = turn.angles[0];
+      for (std::size_t t = 0; t < n; ++t)
+        turn.angles[t] =
+            best_within(turn.pattern.match(pictures[t]), (turn.angles[t] - first) / pitch, 4).shift * pitch;
+    }
+    step = median_step(turn.angles) / pitch;
+    turn.pattern = RoundSpectrum();
+    std::vector<double> power(static_cast<std::size_t>(pictures[0].orders().rows), 0.0);
+    for (std::size_t t = 0; t < n; ++t) {
+      turn.pattern.add_turned_back(pictures[t], turn.angles[t]);
+      const auto p = pictures[t].band_powers();
+      for (std::size_t b = 0; b < p.size(); ++b) power[b] += p[b];
+    }
+    // Share of a band's changes that turns with the drum; chance leaves 1 / n of them in the mean.
+    const auto held = turn.pattern.band_powers();
+    std::vector<double> coherence(held.size());
+    double best = 0;
+    for (std::size_t b = 0; b < held.size(); ++b) {
+      const double count = static_cast<double>(n);
+      coherence[b] = std::max(0.0, held[b] / (count * power[b] + 1e-9) - 1 / count);
+      best = std::max(best, coherence[b]);
+    }
+    turn.coherence = best;
+    if (round == 0 || round == 1) {
+      for (double& c : coherence) c = c > 0.1 * best ? std::sqrt(c / (best + 1e-9)) : 0.0;
+      for (RoundSpectrum& p : pictures) p.weigh_bands(coherence);
+      turn.pattern.weigh_bands(coherence);
+    }
+  }
+  const double first = turn.angles[0];
+  for (double& a : turn.angles) a -= first;
+  turn.step = median_step(turn.angles);
+  turn.found = turn.coherence > 0.05;
+  return turn;
+}
+
+double angle_of(const RoundSpectrum& pattern, const RoundSpectrum& picture, double expected) {
+  const auto match = pattern.match(picture);
+  const double n = static_cast<double>(match.size()), pitch = 2 * kPi / n;
+  const double most = *std::max_element(match.begin(), match.end());
+  double best = expected, nearest = 1e300;
+  for (const Peak& p : peaks_of(match, kNearEqual * most)) {
+    const double angle = expected + std::remainder(p.shift * pitch - expected, 2 * kPi);
+    if (std::abs(angle - expected) >= nearest) continue;
+    nearest = std::abs(angle - expected);
+    best = angle;
+  }
+  return best;
+}
+
+}  // namespace tumble::analysis
