@@ -5,6 +5,7 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
+#include "analysis/drum_cover.h"
 #include "analysis/drum_pose.h"
 #include "analysis/drum_rings.h"
 #include "analysis/drum_scale.h"
@@ -20,10 +21,13 @@ constexpr int kMostFrames = 300;     // looked at
 constexpr int kWidestPicture = 640;  // after reduction: 300 of them are some 70 MB
 constexpr int kPoseFrames = 100;     // of them, for the camera
 constexpr std::size_t kFewestFrames = 8, kFewestSightings = 400;
-constexpr double kLeastTurn = 0.1;   // of the drum during the film, to tell what turns from what stands still [rad]
-constexpr double kBorder = 10;       // within which an edge belongs to the textured surface [px]
-constexpr double kRingAlike = 0.1;   // by which neighbours on an edge err alike [px]
-constexpr double kFinestBlur = 0.7;  // [px]
+constexpr double kLeastTurn = 0.1;    // of the drum during the film, to tell what turns from what stands still [rad]
+constexpr double kBorder = 10;        // within which an edge belongs to the textured surface [px]
+constexpr double kRingAlike = 0.1;    // by which neighbours on an edge err alike [px]
+constexpr double kSlightTilt = 0.04;  // below which the view is as good as frontal to begin with [rad]
+constexpr double kUsualBall = 0.05;   // radius of a ball in shell radii, where neither is known
+constexpr double kShellShare = 0.9;   // of the shell in what turns, roughly
+constexpr double kFinestBlur = 0.7;   // [px]
 
 struct Sample {
   std::vector<cv::Mat> greys;
@@ -33,14 +37,13 @@ struct Sample {
   double fps = kNotGiven;
 };
 
-Sample read_sample(const std::string& path, const Progress& progress) {
+Sample read_sample(const NextPicture& next, double frames_per_second, const Progress& progress) {
   Sample sample;
-  FilmReader film(path);
-  sample.fps = film.frames_per_second();
-  sample.film_size = film.size();
-  sample.reduced = std::max(1, (film.size().width + kWidestPicture - 1) / kWidestPicture);
+  sample.fps = frames_per_second;
   cv::Mat picture, sum, squares;
-  while (static_cast<int>(sample.greys.size()) < kMostFrames && film.next(picture)) {
+  while (static_cast<int>(sample.greys.size()) < kMostFrames && next(picture)) {
+    sample.film_size = picture.size();
+    sample.reduced = std::max(1, (picture.cols + kWidestPicture - 1) / kWidestPicture);
     cv::Mat grey = reduced_grey(picture, sample.reduced);
     if (sum.empty()) {
       sum = cv::Mat::zeros(grey.size(), CV_32F);
@@ -51,6 +54,7 @@ Sample read_sample(const std::string& path, const Progress& progress) {
     sample.greys.push_back(grey);
     report(progress, 0.5 * static_cast<double>(sample.greys.size()) / kMostFrames);
   }
+  if (sample.greys.empty()) return sample;
   const double n = static_cast<double>(sample.greys.size());
   sample.mean = sum / n;
   cv::Mat variance = squares / n - sample.mean.mul(sample.mean);
@@ -58,7 +62,63 @@ Sample read_sample(const std::string& path, const Progress& progress) {
   return sample;
 }
 
-// The drum's angles as far as the frontal view tells them.
+bool is_clear(const RingEdgePoints& r) { return r.coverage > 0.6 && std::abs(r.strength) > 1.5; }
+
+// Those that are circles as good as any: others are outlines before a changing ground, or lie deeper.
+std::vector<RingSighting> sightings_of(const std::vector<RingEdgePoints>& rings) {
+  double smoothest = 1e9;
+  for (const RingEdgePoints& r : rings)
+    if (is_clear(r)) smoothest = std::min(smoothest, r.roughness);
+  std::vector<RingSighting> seen;
+  for (const RingEdgePoints& r : rings)
+    if (is_clear(r) && r.roughness < 2 * smoothest + 0.03)
+      seen.push_back({r.points, r.radius,
+                      std::max(kRingAlike, r.roughness) * std::sqrt(static_cast<double>(r.points.size()) / 12)});
+  return seen;
+}
+
+// Views of the drum that the outlines in the mean picture allow: the frontal one, and the oblique ones that make
+// circles of its ellipses. From the other side of the axis an ellipse looks nearly alike.
+std::vector<DrumPose> likely_poses(const Sample& sample, const TurningDisc& disc, const PosePrior& prior) {
+  std::vector<DrumPose> poses{frontal_pose(sample.mean.size(), disc.axis)};
+  DrumPose best = poses[0];
+  for (double reach : {0.035, 0.02, 0.012}) {
+    DrumSightings seen;
+    seen.rings = sightings_of(
+        find_rings(sample.mean, best, 0.8 * disc.radius, 1.1 * disc.radius, std::max(2.0, reach * disc.radius)));
+    if (seen.rings.empty()) return poses;
+    double least = 1e300;
+    DrumPose next = best;
+    for (int start = 0; start < 5; ++start) {  // the slope towards a tilt vanishes at none
+      DrumPose from = best;
+      if (start < 4 && reach > 0.03) {
+        from.numbers[DrumPose::kTiltX] = (start & 1) != 0 ? 0.1 : -0.1;
+        from.numbers[DrumPose::kTiltY] = (start & 2) != 0 ? 0.1 : -0.1;
+      } else if (start < 4) {
+        continue;
+      }
+      const PoseFit fit = fit_pose(seen, from, {}, {}, prior);
+      if (fit.cost >= least) continue;
+      least = fit.cost;
+      next = fit.pose;
+    }
+    best = next;
+  }
+  const double tilt = std::hypot(best.numbers[DrumPose::kTiltX], best.numbers[DrumPose::kTiltY]);
+  if (tilt < kSlightTilt) return poses;
+  DrumPose other = best;
+  other.numbers[DrumPose::kTiltX] *= -1;
+  other.numbers[DrumPose::kTiltY] *= -1;
+  DrumSightings seen;
+  seen.rings = sightings_of(
+      find_rings(sample.mean, best, 0.8 * disc.radius, 1.1 * disc.radius, std::max(2.0, 0.012 * disc.radius)));
+  other = fit_pose(seen, other, {}, {}, prior).pose;
+  poses.push_back(best);
+  poses.push_back(other);
+  return poses;
+}
+
+// The drum's angles as far as a first view tells them.
 DrumTurn first_turn(const Sample& sample, const DrumPose& pose, const PolarGrid& grid, double expected_step) {
   const Unroller unroll(pose, grid);
   std::vector<cv::Mat> strips;
@@ -93,14 +153,7 @@ DrumSightings look(const DrumReader& reader, const std::vector<double>& angles, 
   const PolarGrid& grid = reader.unroll().grid();
   const auto rings =
       find_rings(mean, reader.unroll().pose(), innermost - margin - reach - kBorder, grid.radius(grid.rows - 1), reach);
-  const auto clear = [](const RingEdgePoints& r) { return r.coverage > 0.6 && std::abs(r.strength) > 1.5; };
-  double smoothest = 1e9;
-  for (const RingEdgePoints& r : rings)
-    if (clear(r)) smoothest = std::min(smoothest, r.roughness);
-  for (const RingEdgePoints& r : rings)  // what is less of a circle is an outline before a changing ground, or deeper
-    if (clear(r) && r.roughness < 2 * smoothest + 0.03)
-      seen.rings.push_back({r.points, r.radius,
-                            std::max(kRingAlike, r.roughness) * std::sqrt(static_cast<double>(r.points.size()) / 12)});
+  seen.rings = sightings_of(rings);
   return seen;
 }
 
@@ -111,7 +164,7 @@ struct Camera {
 };
 
 Camera fit_camera(const Sample& sample, const DrumPose& start, const PolarGrid& grid, const DrumTurn& turn,
-                  const Progress& progress) {
+                  PosePrior prior, const Progress& progress) {
   Camera camera;
   const std::size_t n = sample.greys.size(), count = std::min<std::size_t>(n, kPoseFrames);
   std::vector<cv::Mat> greys;
@@ -121,8 +174,7 @@ Camera fit_camera(const Sample& sample, const DrumPose& start, const PolarGrid& 
     greys.push_back(sample.greys[camera.frames.back()]);
     camera.fit.angles.push_back(turn.angles[camera.frames.back()]);
   }
-  PosePrior prior = usual_camera(sample.mean.size(), grid.radius(grid.rows));
-  prior.deviation[DrumPose::kTwist] = std::abs(turn.step) + 1e-4;  // a picture is read out within its own time
+  prior.deviation[DrumPose::kTwist] = 0.5 * std::abs(turn.step) + 1e-4;  // a picture is read out within its own time
   struct Stage {
     double blur;
     int margin;
@@ -211,9 +263,16 @@ double place_error(const PoseFit& fit, double shell) {
 
 }  // namespace
 
-DrumView calibrate_drum(const std::string& film, const Config& known, const Progress& progress) {
+DrumView calibrate_drum(const std::string& path, const Config& known, const Progress& progress) {
+  FilmReader film(path);
+  return calibrate_drum([&](cv::Mat& picture) { return film.next(picture); }, film.frames_per_second(), known,
+                        progress);
+}
+
+DrumView calibrate_drum(const NextPicture& next, double frames_per_second, const Config& known,
+                        const Progress& progress) {
   DrumView view;
-  const Sample sample = read_sample(film, progress);
+  const Sample sample = read_sample(next, frames_per_second, progress);
   const auto refuse = [&](const std::string& why) {
     view.found = false;
     view.caveats.push_back(why);
@@ -224,14 +283,21 @@ DrumView calibrate_drum(const std::string& film, const Config& known, const Prog
   if (!disc.found) return refuse("no turning drum was found in the film");
   PolarGrid grid;
   grid.inner = std::round(0.70 * disc.radius);
-  grid.rows = static_cast<int>(std::ceil(0.37 * disc.radius / 6)) * 6;
+  grid.rows = static_cast<int>(std::ceil(0.44 * disc.radius / 6)) * 6;
   grid.columns = disc.radius < 230 ? 1024 : 2048;
-  const DrumPose start = frontal_pose(sample.mean.size(), disc.axis);
-  const DrumTurn turn = first_turn(sample, start, grid, speed_rpm(known.mill) * 2 * kPi / 60 / sample.fps);
+  const PosePrior prior = usual_camera(sample.mean.size(), disc.radius);
+  DrumPose start;
+  DrumTurn turn;
+  for (const DrumPose& pose : likely_poses(sample, disc, prior)) {
+    DrumTurn seen = first_turn(sample, pose, grid, speed_rpm(known.mill) * 2 * kPi / 60 / sample.fps);
+    if (seen.coherence <= turn.coherence) continue;
+    turn = std::move(seen);
+    start = pose;
+  }
   if (!turn.found) return refuse("nothing in the film turns about a common axis");
   if (std::abs(turn.angles.back() - turn.angles.front()) < kLeastTurn)
     return refuse("the drum hardly turns while it is filmed");
-  const Camera camera = fit_camera(sample, start, grid, turn, progress);
+  const Camera camera = fit_camera(sample, start, grid, turn, prior, progress);
   if (!camera.found) return refuse("too little of the drum shows marks that turn with it");
   const DrumPose& pose = camera.fit.pose;
 
@@ -250,13 +316,13 @@ DrumView calibrate_drum(const std::string& film, const Config& known, const Prog
 
   // Scale: which circle is the shell.
   const auto rings = find_rings(sample.mean, pose, grid.inner, grid.radius(grid.rows - 1), 1.5);
-  const RadialProfile profile = radial_profile(*reader);
   const double mill_radius = 0.5 * known.mill.diameter;
   double ball = kNotGiven;
   for (const BallClass& c : known.charge.balls)
     if (c.radius > 0 && !(c.radius > ball)) ball = c.radius;
   const MillCamera pixels = pose.camera();
-  ShellGuess shell = find_shell(profile, grid, rings, pixels.translation.norm(), ball / mill_radius);
+  const double ball_share = ball / mill_radius > 0 ? ball / mill_radius : kUsualBall;
+  ShellGuess shell = find_shell(*reader, rings, ball_share * kShellShare * disc.radius);
   view.scale_from = shell.on_ring ? RingKind::kShell : RingKind::kUnknown;
   if (shell.radius == 0) {
     // No charge to be seen: the innermost edge of the textured surface, if it has one.
@@ -296,6 +362,10 @@ DrumView calibrate_drum(const std::string& film, const Config& known, const Prog
   view.lifter_count =
       known.mill.lifters.count > 0 ? known.mill.lifters.count : count_lifters(*reader, tip, 0.99 * shell.radius);
   view.lifter_angle = lifter_angle(*reader, reader->strips(), camera.fit.angles, view.lifter_count, tip, shell.radius);
+  const cv::Mat hidden = hidden_part(sample.mean, sample.deviation, pose, tip, shell.radius);
+  const double deep = ball > 0 && mill_radius > 0 ? 2 * ball / mill_radius * shell.radius : 0.1 * shell.radius;
+  view.hidden_share = hidden_share(hidden, pose, tip - deep, tip);
+  cv::resize(hidden, view.hidden, sample.film_size, 0, 0, cv::INTER_NEAREST);
   reader->forget_strips();
   view.reader = reader;
   if (disc.moving_besides > 0.5)

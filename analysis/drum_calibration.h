@@ -1,4 +1,5 @@
 #pragma once
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -44,5 +45,10 @@ struct DrumView {
 
 // Throws InputError where the file is no film. `known`: whatever is known of the mill.
 DrumView calibrate_drum(const std::string& film, const Config& known, const Progress& progress);
+
+// The same of pictures from elsewhere, 8-bit BGR of one size; `next` is false after the last one.
+using NextPicture = std::function<bool(cv::Mat& bgr)>;
+DrumView calibrate_drum(const NextPicture& next, double frames_per_second, const Config& known,
+                        const Progress& progress);
 
 }  // namespace tumble::analysis

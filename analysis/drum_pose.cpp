@@ -23,7 +23,9 @@ constexpr int kDirections = 12;           // round the axis, in which sightings 
 constexpr double kAlike = 0.1;            // by so much [px]
 constexpr double kLightShift = 0.2;       // of the whole texture against what it is on [px]
 constexpr std::size_t kFewSightings = 8;  // of a piece
-constexpr double kPieceDeviation = 3.0;   // of a piece's place against its rough one [px]: fixes scale and turn only
+// Of a piece's place against its rough one [px]: along the radius next to nothing, for all pieces may lie further out
+// together where distortion says so; across it fixes the turn that pieces and angles share.
+constexpr double kAlongRadius = 100, kAcrossRadius = 3;
 
 // A step of each number that moves the picture by some hundredths of a pixel.
 Numbers small_steps(double reach) {
@@ -234,7 +236,8 @@ class Adjustment {
     const DrumPiece& rough = seen_.pieces[k];
     const double sigma2 = sigma2_[k], say = say_[static_cast<std::size_t>(rough.layer)];
     const Eigen::Vector2d off(s.pieces[k][0] - rough.radius, s.pieces[k][1]);
-    Eigen::Matrix2d c = Eigen::Matrix2d::Identity() / (kPieceDeviation * kPieceDeviation);
+    Eigen::Matrix2d c =
+        Eigen::Vector2d(1 / (kAlongRadius * kAlongRadius), 1 / (kAcrossRadius * kAcrossRadius)).asDiagonal();
     Eigen::Vector2d d = -c * off;
     e.cost += off.dot(c * off);
     Eigen::Matrix<double, Eigen::Dynamic, 2> cross = Eigen::MatrixXd::Zero(unknowns_, 2);

@@ -11,8 +11,9 @@ namespace tumble::analysis {
 namespace {
 
 constexpr int kDirections = 720;
-constexpr int kPerPixel = 2;        // samples along the radius
-constexpr double kLeastStep = 1.0;  // of brightness across a ring [grey levels]
+constexpr int kPerPixel = 2;          // samples along the radius
+constexpr double kLeastStep = 1.0;    // of brightness across a ring [grey levels]
+constexpr double kMovingShare = 0.4;  // of the directions, for a circle to be within the drum: its flange may be plain
 constexpr double kMostCounted = 20.0;
 
 // Edge of a row of samples near `at`, sub-sample: where the step is largest.
@@ -148,7 +149,7 @@ TurningDisc find_turning_disc(const cv::Mat& mean, const cv::Mat& deviation) {
       ++in_view;
       moves += moving.at<uchar>(v, u) != 0;
     }
-    if (in_view < kDirections / 5 || moves < 0.6 * in_view) continue;
+    if (in_view < kDirections / 5 || moves < kMovingShare * in_view) continue;
     disc.radius = r;
     break;
   }

@@ -10,9 +10,13 @@
 namespace tumble::analysis {
 namespace {
 
-constexpr double kEnd = 0.15;        // of the charge's changes: its outermost balls pass seldom
-constexpr double kLeastStep = 3;     // times by which the charge changes more than what lies outside of it
-constexpr double kNearRing = 0.012;  // between the end of the charge and the shell's edge, as a share
+constexpr int kSectors = 36;               // round the drum, in which the charge's end is looked for
+constexpr std::size_t kFewestSectors = 5;  // in which it must be seen
+constexpr double kEnd = 0.15;              // of the charge's changes: what is left of them at its end
+constexpr double kLeastStep = 3;           // times by which the charge changes more than what lies outside of it
+constexpr double kNearRing = 0.012;        // between the end of the charge and the shell's edge, as a share
+constexpr double kEndError = 0.012;        // of the shell by the end of the charge, as a share
+constexpr double kRingError = 0.008;       // of an edge near there: it may be the bore of the flange
 constexpr int kMostLifters = 60;
 constexpr double kLeastPeriodic = 0.35;  // share of the pattern that a lifter count must explain beyond chance
 
@@ -23,35 +27,45 @@ cv::Range rows_between(const PolarGrid& grid, double inner, double outer) {
 
 }  // namespace
 
-RadialProfile radial_profile(const DrumReader& reader) {
-  RadialProfile profile;
-  const cv::Mat& deviation = reader.still().deviation;
-  for (int r = 0; r < deviation.rows; ++r) {
-    const double variance = cv::mean(deviation.row(r).mul(deviation.row(r)), reader.unroll().in_view().row(r))[0];
-    const double held = reader.texture().coherence(r);
-    profile.texture.push_back(std::sqrt(variance * held));
-    profile.charge.push_back(std::sqrt(variance * std::max(0.0, 1 - held)));
-  }
-  return profile;
-}
-
-ShellGuess find_shell(const RadialProfile& profile, const PolarGrid& grid, const std::vector<RingEdgePoints>& rings,
-                      double distance, double ball_share) {
+ShellGuess find_shell(const DrumReader& reader, const std::vector<RingEdgePoints>& rings, double ball) {
   ShellGuess guess;
-  const int rows = static_cast<int>(profile.charge.size());
-  const double most = *std::max_element(profile.charge.begin(), profile.charge.end());
-  const auto charge = [&](int r) { return profile.charge[static_cast<std::size_t>(r)]; };
-  int end = rows - 1;
-  while (end > 0 && charge(end) < kEnd * most) --end;
-  if (end == 0 || end + 1 >= rows) return guess;
-  double outside = 0;  // what is left beyond: texture that light changes, noise
-  for (int r = end + 2; r < std::min(rows, end + 8); ++r) outside = std::max(outside, charge(r));
-  if (most < kLeastStep * outside) return guess;
-  const double share = (charge(end) - kEnd * most) / std::max(1e-9, charge(end) - charge(end + 1));
-  const double depth = std::isnan(ball_share) ? 0.04 : ball_share;
-  const double seen = grid.radius(end + std::clamp(share, 0.0, 1.0));
-  guess.radius = seen * (1 + depth * seen / distance);
-  guess.deviation = 0.006;
+  const PolarGrid& grid = reader.unroll().grid();
+  const MillCamera camera = reader.unroll().pose().camera();
+  const cv::Mat &deviation = reader.still().deviation, &in_view = reader.unroll().in_view();
+  std::vector<double> radii;
+  for (int sector = 0; sector < kSectors; ++sector) {
+    const int first = sector * grid.columns / kSectors, last = (sector + 1) * grid.columns / kSectors;
+    std::vector<double> charge;  // deviation of what does not turn with the drum, by row
+    for (int r = 0; r < grid.rows; ++r) {
+      double sum = 0;
+      for (int k = first; k < last; ++k)
+        sum += in_view.at<uchar>(r, k) != 0 ? deviation.at<float>(r, k) * deviation.at<float>(r, k) : kNotGiven;
+      charge.push_back(std::sqrt(sum / (last - first) * std::max(0.0, 1 - reader.texture().coherence(r))));
+      if (std::isnan(charge.back())) {
+        charge.pop_back();
+        break;
+      }
+    }
+    if (charge.size() < 20) continue;
+    const auto top = std::max_element(charge.begin(), charge.end());
+    const double most = *top;
+    auto end = static_cast<std::size_t>(top - charge.begin());
+    while (end + 1 < charge.size() && charge[end + 1] >= kEnd * most) ++end;
+    if (end + 6 >= charge.size() || end < 4) continue;
+    double outside = 0;  // what is left beyond: texture that light changes, noise
+    for (std::size_t r = end + 3; r < std::min(charge.size(), end + 9); ++r) outside = std::max(outside, charge[r]);
+    if (charge[end - 4] < kLeastStep * outside) continue;
+    const double share = (charge[end] - kEnd * most) / std::max(1e-9, charge[end] - charge[end + 1]);
+    const double seen = grid.radius(static_cast<double>(end) + std::clamp(share, 0.0, 1.0));
+    // Where a shell of that radius would be seen to end, in this direction.
+    const double a = 0.5 * (first + last) * grid.pitch();
+    const cv::Point2d edge = picture_of(camera, {seen * std::cos(a), seen * std::sin(a), -ball});
+    radii.push_back(seen * seen / std::min(seen, mill_place_at(camera, edge, 0).norm()));
+  }
+  if (radii.size() < kFewestSectors) return guess;
+  std::sort(radii.begin(), radii.end());
+  guess.radius = radii[radii.size() / 2];
+  guess.deviation = kEndError;
   const RingEdgePoints* nearest = nullptr;
   for (const RingEdgePoints& ring : rings) {
     if (ring.coverage < 0.5 || std::abs(ring.radius / guess.radius - 1) > kNearRing) continue;
@@ -60,7 +74,7 @@ ShellGuess find_shell(const RadialProfile& profile, const PolarGrid& grid, const
   if (nearest != nullptr) {
     // Halfway where they differ by more than their errors would explain: neither is sure.
     const double miss = nearest->radius / guess.radius - 1, trust = 1 / (1 + std::pow(miss / 0.006, 4));
-    guess.deviation = 0.003 + 0.5 * std::abs(miss);
+    guess.deviation = kRingError + 0.5 * std::abs(miss);
     guess.radius *= 1 + trust * miss;
     guess.on_ring = trust > 0.5;
   }

@@ -9,24 +9,17 @@ namespace tumble::analysis {
 
 // Lengths in pixels at the mill's origin.
 
-// What moves at each radius of the unrolled ring [grey levels].
-struct RadialProfile {
-  std::vector<double> texture;  // deviation of what turns with the drum
-  std::vector<double> charge;   // deviation of what does not, noise included
-};
-RadialProfile radial_profile(const DrumReader& reader);
-
 struct ShellGuess {
-  double radius = 0;     // of the shell in the plane z = 0; 0 where nothing tells
+  double radius = 0;     // of the shell; 0 where nothing tells
   double deviation = 0;  // its standard error, as a share
-  bool on_ring = false;  // an edge goes round there
+  bool on_ring = false;  // an edge goes round there in the plane z = 0
 };
 
 // Nothing but the charge moves by itself, and it reaches as far as the shell: there what moves without turning with the
-// drum ends. A ball that touches glass and shell is seen up to R d / (d + r) in the plane of the glass, `distance` d of
-// the camera, r the ball's radius in shell radii. An edge that goes round near that is the shell's.
-ShellGuess find_shell(const RadialProfile& profile, const PolarGrid& grid, const std::vector<RingEdgePoints>& rings,
-                      double distance, double ball_share);
+// drum ends, direction by direction. A ball that touches shell and glass is seen up to the shell in the plane of its
+// centre, `ball` behind the glass, unless the shell's front hides it. An edge that goes round near there is the
+// shell's.
+ShellGuess find_shell(const DrumReader& reader, const std::vector<RingEdgePoints>& rings, double ball);
 
 // Lifters by what repeats round the drum between two radii; 0 where nothing does.
 int count_lifters(const DrumReader& reader, double inner, double outer);

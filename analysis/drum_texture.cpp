@@ -121,7 +121,7 @@ void DrumTexture::finish(int margin) {
     }
     const int first = r;
     while (r < g.rows && textured(r)) ++r;
-    const int from = first == 0 ? 0 : first + margin, rows = r - margin - from;
+    const int from = first == 0 ? 0 : first + margin, rows = (r == g.rows ? r : r - margin) - from;
     if (rows < kLeastRows) continue;
     const int parts = (rows + kMostRows - 1) / kMostRows;
     for (int i = 0; i < parts; ++i) bands_.emplace_back(from + i * rows / parts, from + (i + 1) * rows / parts);

@@ -10,8 +10,11 @@ namespace tumble::analysis {
 namespace {
 
 constexpr int kGroup = 6;            // rows taken together
+constexpr int kTogether = 3;         // bands that are followed by themselves at first
 constexpr int kLeastOrder = 2;       // light that changes is of the lowest orders
 constexpr double kGreyNoise = 0.5;   // of a group's mean [grey levels]: bands in which nothing moves have no say
+constexpr std::size_t kTrial = 80;   // pictures that show which of several turns is the drum's
+constexpr double kUnsteady = 0.08;   // of the turn from picture to picture, as a share
 constexpr double kNearEqual = 0.85;  // of the best match
 
 struct Peak {
@@ -83,6 +86,12 @@ std::vector<float> RoundSpectrum::match(const RoundSpectrum& other) const {
   return result;
 }
 
+RoundSpectrum RoundSpectrum::bands(const cv::Range& range) const {
+  RoundSpectrum some;
+  some.orders_ = orders_.rowRange(range);
+  return some;
+}
+
 double RoundSpectrum::power() const { return cv::norm(orders_, cv::NORM_L2SQR); }
 
 void RoundSpectrum::add_turned_back(const RoundSpectrum& other, double angle) {
@@ -115,18 +124,24 @@ std::vector<double> RoundSpectrum::band_powers() const {
 
 namespace {
 
-// Commonest turn between neighbours [columns], from all pairs at once.
+// Commonest turn between neighbours [columns], from all pairs at once; NaN where none stands out.
 double commonest_turn(const std::vector<RoundSpectrum>& pictures, double expected_columns) {
-  std::vector<float> all(static_cast<std::size_t>(pictures[0].orders().cols), 0.0F);
+  cv::Mat cross, product, sum, back;
   for (std::size_t t = 0; t + 1 < pictures.size(); ++t) {
-    const auto pair = pictures[t].match(pictures[t + 1]);
-    for (std::size_t k = 0; k < all.size(); ++k) all[k] += pair[k] / static_cast<float>(pictures.size() - 1);
+    cv::mulSpectrums(pictures[t + 1].orders(), pictures[t].orders(), product, cv::DFT_ROWS, true);
+    if (cross.empty())
+      cross = product.clone();
+    else
+      cross += product;
   }
-  const double most = *std::max_element(all.begin(), all.end());
-  if (most < 0.05) return kNotGiven;
-  // Of near equals the turn of the expected size, else the slowest.
+  cv::reduce(cross, sum, 0, cv::REDUCE_SUM);
+  cv::dft(sum, back, cv::DFT_INVERSE | cv::DFT_REAL_OUTPUT);
+  const std::vector<float> match(back.ptr<float>(0), back.ptr<float>(0) + back.cols);
+  const double most = *std::max_element(match.begin(), match.end());
   double least_miss = 1e300, chosen = kNotGiven;
-  for (const Peak& p : peaks_of(all, kNearEqual * most)) {
+  if (!(most > 0)) return chosen;
+  // Of near equals the turn of the expected size, else the slowest.
+  for (const Peak& p : peaks_of(match, kNearEqual * most)) {
     const double miss =
         std::isnan(expected_columns) ? std::abs(p.shift) : std::abs(std::abs(p.shift) - expected_columns);
     if (miss >= least_miss) continue;
@@ -146,14 +161,14 @@ double median_step(const std::vector<double>& angles) {
 
 // Picture by picture against the mean of those before, turned back: the charge washes out of it and errors do not add
 // up.
-std::vector<double> follow(const std::vector<RoundSpectrum>& pictures, double step) {
+std::vector<double> follow(const std::vector<RoundSpectrum>& pictures, double step, std::size_t count) {
   const double columns = pictures[0].orders().cols, pitch = 2 * kPi / columns;
   std::vector<double> angles{0.0};
   RoundSpectrum mean;
   mean.add_turned_back(pictures[0], 0);
-  for (std::size_t t = 1; t < pictures.size(); ++t) {
+  for (std::size_t t = 1; t < count; ++t) {
     const auto match = mean.match(pictures[t]);
-    const double last = angles.back() / pitch, reach = 0.4 * std::abs(step) + 2;
+    const double last = angles.back() / pitch, reach = kUnsteady * std::abs(step) + 1.5;
     // As usual, a repeated picture, one or two missing; anything else must match much better to be believed.
     Peak best = best_within(match, last + step, reach);
     for (double times : {0.0, 2.0, 3.0}) {
@@ -166,6 +181,24 @@ std::vector<double> follow(const std::vector<RoundSpectrum>& pictures, double st
   return angles;
 }
 
+// The pictures' mean, turned back, and the share of each band's changes that it holds; chance leaves 1 / n of them in
+// it.
+RoundSpectrum turned_back(const std::vector<RoundSpectrum>& pictures, const std::vector<double>& angles,
+                          std::vector<double>& coherence) {
+  RoundSpectrum pattern;
+  std::vector<double> power(static_cast<std::size_t>(pictures[0].orders().rows), 0.0);
+  for (std::size_t t = 0; t < angles.size(); ++t) {
+    pattern.add_turned_back(pictures[t], angles[t]);
+    const auto p = pictures[t].band_powers();
+    for (std::size_t b = 0; b < p.size(); ++b) power[b] += p[b];
+  }
+  const double n = static_cast<double>(angles.size());
+  const auto held = pattern.band_powers();
+  coherence.resize(held.size());
+  for (std::size_t b = 0; b < held.size(); ++b) coherence[b] = std::max(0.0, held[b] / (n * power[b] + 1e-9) - 1 / n);
+  return pattern;
+}
+
 }  // namespace
 
 DrumTurn follow_turn(std::vector<RoundSpectrum> pictures, double expected_step) {
@@ -173,11 +206,32 @@ DrumTurn follow_turn(std::vector<RoundSpectrum> pictures, double expected_step) 
   const std::size_t n = pictures.size();
   if (n < 3) return turn;
   const double pitch = 2 * kPi / pictures[0].orders().cols;
-  double step = commonest_turn(pictures, std::abs(expected_step) / pitch);
+  // Flange, lifters and charge turn each in their own way: of a few bands at a time, those that hold together best.
+  const int bands = pictures[0].orders().rows;
+  std::vector<double> coherence;
+  double step = kNotGiven, most = 0;
+  cv::Range chosen;
+  for (int b = 0; b + kTogether <= std::max(bands, kTogether); b += kTogether - 1) {
+    const cv::Range range(b, std::min(bands, b + kTogether));
+    std::vector<RoundSpectrum> some;
+    for (const RoundSpectrum& p : pictures) some.push_back(p.bands(range));
+    const double s = commonest_turn(some, std::abs(expected_step) / pitch);
+    if (std::isnan(s)) continue;
+    turned_back(some, follow(some, s, std::min(n, kTrial)), coherence);
+    const double best = *std::max_element(coherence.begin(), coherence.end());
+    if (best <= most) continue;
+    most = best;
+    step = s;
+    chosen = range;
+  }
   if (std::isnan(step)) return turn;
   for (int round = 0; round < 5; ++round) {
-    if (round < 2) {
-      turn.angles = follow(pictures, step);
+    if (round == 0) {
+      std::vector<RoundSpectrum> some;
+      for (const RoundSpectrum& p : pictures) some.push_back(p.bands(chosen));
+      turn.angles = follow(some, step, n);
+    } else if (round == 1) {
+      turn.angles = follow(pictures, step, n);
     } else {
       const double first = turn.angles[0];
       for (std::size_t t = 0; t < n; ++t)
@@ -185,25 +239,10 @@ DrumTurn follow_turn(std::vector<RoundSpectrum> pictures, double expected_step) 
             best_within(turn.pattern.match(pictures[t]), (turn.angles[t] - first) / pitch, 4).shift * pitch;
     }
     step = median_step(turn.angles) / pitch;
-    turn.pattern = RoundSpectrum();
-    std::vector<double> power(static_cast<std::size_t>(pictures[0].orders().rows), 0.0);
-    for (std::size_t t = 0; t < n; ++t) {
-      turn.pattern.add_turned_back(pictures[t], turn.angles[t]);
-      const auto p = pictures[t].band_powers();
-      for (std::size_t b = 0; b < p.size(); ++b) power[b] += p[b];
-    }
-    // Share of a band's changes that turns with the drum; chance leaves 1 / n of them in the mean.
-    const auto held = turn.pattern.band_powers();
-    std::vector<double> coherence(held.size());
-    double best = 0;
-    for (std::size_t b = 0; b < held.size(); ++b) {
-      const double count = static_cast<double>(n);
-      coherence[b] = std::max(0.0, held[b] / (count * power[b] + 1e-9) - 1 / count);
-      best = std::max(best, coherence[b]);
-    }
-    turn.coherence = best;
-    if (round == 0 || round == 1) {
-      for (double& c : coherence) c = c > 0.1 * best ? std::sqrt(c / (best + 1e-9)) : 0.0;
+    turn.pattern = turned_back(pictures, turn.angles, coherence);
+    turn.coherence = *std::max_element(coherence.begin(), coherence.end());
+    if (round < 2) {
+      for (double& c : coherence) c = c > 0.1 * turn.coherence ? std::sqrt(c / (turn.coherence + 1e-9)) : 0.0;
       for (RoundSpectrum& p : pictures) p.weigh_bands(coherence);
       turn.pattern.weigh_bands(coherence);
     }

@@ -20,6 +20,7 @@ class RoundSpectrum {
   // Sum of spectra, each turned back by its angle: what turns with the drum.
   void add_turned_back(const RoundSpectrum& other, double angle);
 
+  RoundSpectrum bands(const cv::Range& range) const;  // of the same data
   void weigh_bands(const std::vector<double>& weights);
   std::vector<double> band_powers() const;
 
