@@ -9,96 +9,73 @@
 #include "core/config.h"
 
 namespace tumble::analysis {
-namespace {
 
-constexpr int kLevels = 16;  // of each colour channel
-constexpr int kRounds = 4;   // of learning from what was just recognised
-
-using Histogram = std::vector<double>;  // over kLevels^3 colours
-
-std::size_t colour_bin(const cv::Vec3b& lab) {
-  return (static_cast<std::size_t>(lab[0]) / 16 * kLevels + lab[1] / 16u) * kLevels + lab[2] / 16u;
+cv::Mat charge_share(const Detections& seen, cv::Size picture) {
+  cv::Mat share = cv::Mat::zeros(picture, CV_32F);
+  if (!seen.charge.empty()) {
+    cv::Mat part;
+    cv::resize(seen.charge, part, seen.window.size(), 0, 0, cv::INTER_LINEAR);
+    part.copyTo(share(seen.window));
+  }
+  return share;
 }
 
-// Neighbouring colours vouch for each other.
-Histogram smoothed(const Histogram& h) {
-  Histogram result(h.size(), 0.0);
-  const auto at = [&](int a, int b, int c) {
-    if (a < 0 || b < 0 || c < 0 || a >= kLevels || b >= kLevels || c >= kLevels) return 0.0;
-    return h[(static_cast<std::size_t>(a) * kLevels + b) * kLevels + c];
-  };
-  double total = 0;
-  for (int a = 0; a < kLevels; ++a)
-    for (int b = 0; b < kLevels; ++b)
-      for (int c = 0; c < kLevels; ++c) {
-        double sum = 4 * at(a, b, c);
-        sum +=
-            at(a - 1, b, c) + at(a + 1, b, c) + at(a, b - 1, c) + at(a, b + 1, c) + at(a, b, c - 1) + at(a, b, c + 1);
-        result[(static_cast<std::size_t>(a) * kLevels + b) * kLevels + c] = sum;
-        total += sum;
-      }
-  for (double& v : result) v /= std::max(1.0, total);
-  return result;
-}
-
-}  // namespace
-
-std::vector<cv::Mat> charge_shares(const std::vector<cv::Mat>& pictures,
-                                   const std::vector<std::vector<Detection>>& balls, const Circle& mill) {
-  std::vector<cv::Mat> lab(pictures.size()), charge(pictures.size());
-  cv::Mat inside = cv::Mat::zeros(pictures.at(0).size(), CV_8U);
-  constexpr int kShift = 4;
-  const auto fixed = [](double x) { return static_cast<int>(std::lround(x * (1 << kShift))); };
-  cv::circle(inside, {fixed(mill.u), fixed(mill.v)}, fixed(mill.radius), 255, cv::FILLED, cv::LINE_8, kShift);
-  double radius = 0, count = 0;
-  for (std::size_t i = 0; i < pictures.size(); ++i) {
-    cv::cvtColor(pictures[i], lab[i], cv::COLOR_BGR2Lab);
-    charge[i] = cv::Mat::zeros(inside.size(), CV_32F);
-    for (const Detection& d : balls[i]) {
-      cv::circle(charge[i], {fixed(d.u), fixed(d.v)}, fixed(0.8 * d.radius), 1.0, cv::FILLED, cv::LINE_8, kShift);
-      radius += d.radius;
-      count += 1;
-    }
+std::vector<cv::Mat> two_tone_shares(const std::vector<cv::Mat>& pictures, const Circle& mill) {
+  constexpr double kClear = 0.9;   // share of the variance that lies between the tones
+  constexpr double kInner = 0.97;  // of the circle: its edge has a tone of its own
+  std::vector<cv::Mat> greys;
+  std::array<double, 256> histogram{};
+  for (const cv::Mat& picture : pictures) {
+    cv::Mat grey;
+    cv::cvtColor(picture, grey, cv::COLOR_BGR2GRAY);
+    for (int v = 0; v < grey.rows; ++v)
+      for (int u = 0; u < grey.cols; ++u)
+        if (std::hypot(u - mill.u, v - mill.v) < kInner * mill.radius) histogram[grey.at<uchar>(v, u)] += 1;
+    greys.push_back(grey);
   }
-  if (count > 0) radius /= count;
-  // Start: balls found are charge, what is well away from them is not. Then what looks like charge around, is charge:
-  // so the balls that were missed stop counting against their own colours.
-  for (int round = 0; round < kRounds; ++round) {
-    Histogram on(kLevels * kLevels * kLevels, 0.0), off = on;
-    for (std::size_t i = 0; i < pictures.size(); ++i) {
-      cv::Mat around;
-      if (round == 0) {
-        const int reach = 2 * static_cast<int>(std::ceil(radius)) + 1;
-        cv::dilate(charge[i], around, cv::getStructuringElement(cv::MORPH_ELLIPSE, {reach, reach}));
-      } else {
-        around = charge[i];
-      }
-      for (int v = 0; v < inside.rows; ++v)
-        for (int u = 0; u < inside.cols; ++u) {
-          if (!inside.at<uchar>(v, u)) continue;
-          const std::size_t bin = colour_bin(lab[i].at<cv::Vec3b>(v, u));
-          if (charge[i].at<float>(v, u) > 0.5f)
-            on[bin] += 1;
-          else if (around.at<float>(v, u) < 0.5f)
-            off[bin] += 1;
-        }
-    }
-    on = smoothed(on);
-    off = smoothed(off);
-    for (std::size_t i = 0; i < pictures.size(); ++i) {
-      cv::Mat likely(inside.size(), CV_32F, cv::Scalar(0));
-      for (int v = 0; v < inside.rows; ++v)
-        for (int u = 0; u < inside.cols; ++u) {
-          if (!inside.at<uchar>(v, u)) continue;
-          const std::size_t bin = colour_bin(lab[i].at<cv::Vec3b>(v, u));
-          constexpr double kUnseen = 1e-6;  // a colour never met says nothing
-          likely.at<float>(v, u) = static_cast<float>((on[bin] + kUnseen) / (on[bin] + off[bin] + 2 * kUnseen));
-        }
-      // A ball is bright, dark and coloured in its parts: its pixels vote together.
-      cv::GaussianBlur(likely, charge[i], {}, std::max(1.0, 0.35 * radius));
-    }
+  // The threshold that parts the pixels best (Otsu 1979), and the tones on its two sides.
+  double n = 0, sum = 0, squares = 0;
+  for (int i = 0; i < 256; ++i) {
+    const double h = histogram[static_cast<std::size_t>(i)];
+    n += h;
+    sum += h * i;
+    squares += h * i * i;
   }
-  return charge;
+  if (n < 100) return {};
+  const double variance = squares / n - sum * sum / (n * n);
+  double best = 0, dark = 0, bright = 0, below = 0, sum_below = 0;
+  int threshold = 0;
+  for (int i = 0; i + 1 < 256; ++i) {
+    below += histogram[static_cast<std::size_t>(i)];
+    sum_below += histogram[static_cast<std::size_t>(i)] * i;
+    if (below == 0 || below == n) continue;
+    const double low = sum_below / below, high = (sum - sum_below) / (n - below);
+    const double between = below / n * (1 - below / n) * (high - low) * (high - low);
+    if (between <= best) continue;
+    best = between;
+    threshold = i;
+    dark = low;
+    bright = high;
+  }
+  if (best < kClear * variance || bright - dark < 30) return {};
+  double dark_rows = 0, dark_count = 0, bright_rows = 0, bright_count = 0;
+  for (const cv::Mat& grey : greys)
+    for (int v = 0; v < grey.rows; ++v)
+      for (int u = 0; u < grey.cols; ++u) {
+        if (std::hypot(u - mill.u, v - mill.v) >= kInner * mill.radius) continue;
+        const bool is_dark = grey.at<uchar>(v, u) <= threshold;
+        (is_dark ? dark_rows : bright_rows) += v;
+        (is_dark ? dark_count : bright_count) += 1;
+      }
+  const bool bed_is_dark = dark_rows / dark_count > bright_rows / bright_count;
+  std::vector<cv::Mat> shares;
+  for (const cv::Mat& grey : greys) {
+    cv::Mat share;
+    const double slope = (bed_is_dark ? -1 : 1) / (bright - dark), air = bed_is_dark ? bright : dark;
+    grey.convertTo(share, CV_32F, slope, -slope * air);
+    shares.push_back(cv::max(0.0, cv::min(1.0, share)));
+  }
+  return shares;
 }
 
 RingProfile mask_occupancy(const cv::Mat& share, const Circle& mill, const Ring& ring, bool mirror) {

@@ -7,15 +7,18 @@
 
 namespace tumble::analysis {
 
-// Which pixels show charge, for pictures in which not every ball can be found: what colours the balls have that were
-// found, against what the rest of the mill looks like.
+// Which pixels show charge, for pictures in which not every ball can be found.
 
-// Shares of charge (0 to 1, CV_32F, one per picture) within the mill. Learned from all pictures together.
-std::vector<cv::Mat> charge_shares(const std::vector<cv::Mat>& pictures,
-                                   const std::vector<std::vector<Detection>>& balls, const Circle& mill);
+// What the net takes for balls, by pixel of the picture (0 to 1, CV_32F).
+cv::Mat charge_share(const Detections& seen, cv::Size picture);
 
-// Areal occupancy of a ring (radii in pixels) by the pixels that show charge; angles counter-clockwise as seen,
-// mirrored (x -> -x) where asked.
+// A bed too fine for its balls to be told apart, before a plain ground (or air, in averaged pictures): the two tones of
+// what lies within the circle, and for every pixel its share of the bed's. The bed is the one that lies lower. Empty
+// where the pictures have not two tones.
+std::vector<cv::Mat> two_tone_shares(const std::vector<cv::Mat>& pictures, const Circle& mill);
+
+// Areal occupancy of a ring (radii in pixels) by the pixels that show charge, by half at least; angles
+// counter-clockwise as seen, mirrored (x -> -x) where asked.
 RingProfile mask_occupancy(const cv::Mat& share, const Circle& mill, const Ring& ring, bool mirror);
 
 }  // namespace tumble::analysis

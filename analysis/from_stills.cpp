@@ -75,6 +75,18 @@ void place_shell(MillView& view, const FilmSurvey& survey, double reach, const C
     for (std::size_t c = 0; c < sizes.size(); ++c) view.radii[c] = sizes[c] / view.metres_per_pixel;
 }
 
+// Of balls that cannot be told apart [px]: as known, else a guess that is small beside the mill.
+double fine_diameter(const Config& known, const MillView& view) {
+  double sum = 0, shares = 0;
+  for (const BallClass& c : known.charge.balls)
+    if (c.radius > 0) {
+      sum += 2 * c.radius * c.share;
+      shares += c.share;
+    }
+  const double diameter = sum / shares / view.metres_per_pixel;
+  return std::isnan(diameter) ? 0.08 * view.mill.radius : diameter;
+}
+
 }  // namespace
 
 ChargeMotion measure_stills(const std::string& folder, const FilmOptions& options, const Progress& progress) {
@@ -109,12 +121,28 @@ ChargeMotion measure_stills(const std::string& folder, const FilmOptions& option
   BallEyes eyes;
   const BallLook look = learn_look(eyes.net, stills, survey.centre, known_radii(known));
   std::vector<std::vector<Detection>> balls;
+  std::vector<cv::Mat> shares;
   for (const cv::Mat& still : stills) {
-    balls.push_back(detect_balls(eyes, still, look, survey.centre, kBirthScore).balls);
+    const Detections seen = detect_balls(eyes, still, look, survey.centre, kBirthScore);
+    balls.push_back(seen.balls);
+    shares.push_back(charge_share(seen, still.size()));
     report(progress, 0.1 + 0.5 * static_cast<double>(balls.size()) / static_cast<double>(stills.size()));
   }
-  MillView view = find_view(balls, look, survey, DrumPattern{}, known, motion.caveats);
-  place_shell(view, survey, charge_reach(charge_shares(stills, balls, survey.centre), survey.centre), known);
+  const bool resolved = std::any_of(balls.begin(), balls.end(), [](const auto& f) { return !f.empty(); });
+  MillView view;
+  if (resolved) {
+    view = find_view(balls, look, survey, DrumPattern{}, known, motion.caveats);
+  } else {
+    shares = two_tone_shares(stills, survey.centre);
+    if (shares.empty())
+      throw InputError(folder,
+                       "shows neither balls of at least 3 pixels' radius nor a bed of one tone before another; one or "
+                       "the other was expected in the mill");
+    motion.caveats.push_back("balls too small to be told apart: toe, shoulder and filling are those of the bed's tone");
+    view.mill = survey.centre;
+    view.metres_per_pixel = 0.5 * known.mill.diameter / view.mill.radius;
+  }
+  place_shell(view, survey, charge_reach(shares, survey.centre), known);
   motion.camera.centre_u_px = view.mill.u;
   motion.camera.centre_v_px = view.mill.v;
   motion.camera.radius_px = view.mill.radius;
@@ -134,11 +162,8 @@ ChargeMotion measure_stills(const std::string& folder, const FilmOptions& option
       count += 1;
     }
   }
-  if (count == 0)
-    throw InputError(folder, "shows no balls; balls of at least 3 pixels' radius were expected in the mill");
-  const double diameter = diameters / count;  // [px]
+  const double diameter = count > 0 ? diameters / count : fine_diameter(known, view);  // [px]
 
-  const auto shares = charge_shares(stills, balls, view.mill);
   motion.lifter_count = known.mill.lifters.count;
   const bool tips_known = known.mill.diameter > 0 && view.tip_radius < view.mill.radius;
   if (!tips_known || motion.lifter_count < 1) {
