@@ -138,4 +138,23 @@ BallPlane measure_ball_plane(const std::vector<SeenFrame>& frames, double mill_r
   return plane;
 }
 
+void drop_impossible(std::vector<SeenFrame>& frames, double length) {
+  constexpr double kSlack = 0.8;  // of the distance: centres are not exact, and balls are seen in perspective
+  if (std::isnan(length)) return;
+  for (SeenFrame& f : frames) {
+    std::stable_sort(f.balls.begin(), f.balls.end(),
+                     [](const Sighting& a, const Sighting& b) { return a.score > b.score; });
+    std::vector<Sighting> kept;
+    for (const Sighting& b : f.balls) {
+      const bool possible = std::none_of(kept.begin(), kept.end(), [&](const Sighting& k) {
+        const double sum = b.radius + k.radius, behind = std::max(0.0, length - sum);
+        if (behind >= sum) return false;
+        return std::hypot(b.x - k.x, b.y - k.y) < kSlack * std::sqrt(sum * sum - behind * behind);
+      });
+      if (possible) kept.push_back(b);
+    }
+    f.balls = std::move(kept);
+  }
+}
+
 }  // namespace tumble::analysis

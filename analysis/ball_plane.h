@@ -22,4 +22,9 @@ struct BallPlane {
 // the factor, before the balls are asked.
 BallPlane measure_ball_plane(const std::vector<SeenFrame>& frames, double mill_radius, const Estimate& prior);
 
+// In a shallow mill balls hardly come to lie before one another: of two sightings nearer to each other than two balls
+// can be in this length, the less certain one is dropped (a shadow, a mark, a half of a ball). Nothing happens where
+// the length is NaN.
+void drop_impossible(std::vector<SeenFrame>& frames, double length);
+
 }  // namespace tumble::analysis

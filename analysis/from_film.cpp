@@ -252,6 +252,7 @@ ChargeMotion measure_film(const std::string& path, const FilmOptions& options, c
                               : look.radii[c] / scene.pixels_per_unit);
   std::vector<SeenFrame> places = places_of(film, clock, scene);
   settle_lengths(places, scene, sizes, motion.caveats);
+  drop_impossible(places, known.mill.length / scene.metres);
 
   // Repeats are not linked: each takes over what the frame before it shows.
   std::vector<SeenFrame> frames;

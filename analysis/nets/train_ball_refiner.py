@@ -1,0 +1,111 @@
+#!/usr/bin/env python3
+"""Teaches the network that puts a ball's centre right (ball_refiner.h). Needs what train_ball_net.py needs.
+
+  train_ball_refiner.py DIR... --minutes 120 --state ball_refiner.pt --weights analysis/nets/ball_refiner.weights
+"""
+import argparse
+import os
+
+import cv2
+import numpy as np
+import torch
+import torch.nn as nn
+import torch.nn.functional as F
+
+import pictures as pics
+
+RADIUS, SIDE = 8.0, 24  # of the ball in the patch, of the patch [px]
+
+
+class BallRefiner(nn.Module):
+    """Shift of the centre along u and v [radii], log of its deviation, log(radius / supposed), visible."""
+
+    def __init__(self):
+        super().__init__()
+        self.a = nn.Conv2d(3, 16, 3, 1, 1)
+        self.b = nn.Conv2d(16, 32, 3, 2, 1)
+        self.c = nn.Conv2d(32, 32, 3, 2, 1)
+        self.d = nn.Conv2d(32, 32, 3, 1, 1)
+        self.e = nn.Conv2d(32, 48, SIDE // 4)
+        self.f = nn.Conv2d(48, 5, 1)
+        nn.init.normal_(self.f.weight, 0, 0.01)
+        nn.init.zeros_(self.f.bias)
+
+    def forward(self, x):
+        x = F.relu(self.c(F.relu(self.b(F.relu(self.a(x))))))
+        return self.f(F.relu(self.e(F.relu(x + self.d(x)))))[:, :, 0, 0]
+
+    def convolutions(self):
+        return [self.a, self.b, self.c, self.d, self.e, self.f]
+
+
+def prepare(picture, balls, cover, about):
+    height, width = picture.shape[:2]
+    here = (balls[:, 3] > pics.LEAST_VISIBLE) & (balls[:, 2] > 3.2) & (balls[:, 0] > 0) & (balls[:, 1] > 0)
+    here &= (balls[:, 0] < width) & (balls[:, 1] < height)
+    return (picture, balls[here]) if here.sum() > 3 else None
+
+
+def patch_of(picture, m, scale, u, v, r):
+    """The patch, with what is too fine for it averaged out first."""
+    if scale < 0.8:
+        reach = int(np.ceil(2.4 * r)) + 3
+        u0, v0 = max(0, int(u) - reach), max(0, int(v) - reach)
+        part = cv2.GaussianBlur(picture[v0:int(v) + reach + 1, u0:int(u) + reach + 1], (0, 0), 0.45 * np.sqrt(scale ** -2 - 1))
+        m = np.concatenate([m[:, :2], (m[:, 2] + m[:, :2] @ [u0, v0])[:, None]], 1)
+        return cv2.warpAffine(part, m, (SIDE, SIDE), flags=cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE)
+    return cv2.warpAffine(picture, m, (SIDE, SIDE), flags=cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE)
+
+
+def make_batch(pictures, rng, count=256):
+    x, told, k = np.empty((count, 3, SIDE, SIDE), np.float32), np.empty((count, 4), np.float32), 0
+    while k < count:
+        picture, balls = pictures.any(rng)
+        for _ in range(min(16, count - k)):
+            u, v, r, visible, _class = balls[rng.integers(len(balls))]
+            off, growth = rng.normal(0, 0.13, 2).clip(-0.4, 0.4) * r, rng.normal(0, 0.03)
+            scale = RADIUS / (r * np.exp(growth))
+            m = pics.turned(rng, scale, (u + off[0], v + off[1]), SIDE)
+            patch = pics.vary(patch_of(picture, m, scale, u, v, r), rng)
+            x[k] = ((patch - patch.mean()) / (patch.std() + 6)).transpose(2, 0, 1)
+            shift = m[:, :2] @ -off / RADIUS
+            told[k] = shift[0], shift[1], -growth, min(1, visible)
+            k += 1
+    return x, told
+
+
+def losses(net, x, told):
+    y = net(x)
+    deviation, d2 = y[:, 2].clamp(-6, 1), ((y[:, :2] - told[:, :2]) ** 2).sum(1)
+    place = (2 * torch.log1p(d2 * torch.exp(-2 * deviation) / 2) + 2 * deviation).mean()
+    radius = F.smooth_l1_loss(y[:, 3], told[:, 2], beta=0.02)
+    visible = F.mse_loss(torch.sigmoid(y[:, 4]), told[:, 3])
+    whole = d2.detach()[told[:, 3] > 0.9]
+    numbers = [place.item(), RADIUS * d2.detach().median().item() ** 0.5, RADIUS * whole.median().item() ** 0.5, visible.item()]
+    return place + 3 * radius + 0.5 * visible, numbers
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument('pictures', nargs='+')
+    parser.add_argument('--minutes', type=float, default=120)
+    parser.add_argument('--rate', type=float, default=2e-3)
+    parser.add_argument('--seed', type=int, default=1)
+    parser.add_argument('--state', required=True, help='what training goes on from, where it exists, and is kept in')
+    parser.add_argument('--weights', required=True)
+    a = parser.parse_args()
+    torch.manual_seed(a.seed)
+    torch.set_num_threads(1)
+    net = BallRefiner()
+    if os.path.exists(a.state):
+        net.load_state_dict(torch.load(a.state))
+
+    def save():
+        torch.save(net.state_dict(), a.state)
+        pics.write_weights(a.weights, net.convolutions())
+
+    pics.train(net, losses, pics.feed(make_batch, a.pictures, prepare, a.seed, ahead=12), a.minutes, a.rate, save)
+
+
+if __name__ == '__main__':
+    main()
