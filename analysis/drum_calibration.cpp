@@ -17,9 +17,9 @@
 namespace tumble::analysis {
 namespace {
 
-constexpr int kMostFrames = 300;     // looked at
-constexpr int kWidestPicture = 640;  // after reduction: 300 of them are some 70 MB
-constexpr int kPoseFrames = 100;     // of them, for the camera
+constexpr int kMostFrames = 300;  // looked at
+constexpr int kUsualWidth = 640;  // of pictures after reduction [px]: 300 of them are some 70 MB, never 150
+constexpr int kPoseFrames = 100;  // of them, for the camera
 constexpr std::size_t kFewestFrames = 8, kFewestSightings = 400;
 constexpr double kLeastTurn = 0.1;    // of the drum during the film, to tell what turns from what stands still [rad]
 constexpr double kBorder = 10;        // within which an edge belongs to the textured surface [px]
@@ -27,11 +27,17 @@ constexpr double kRingAlike = 0.1;    // by which neighbours on an edge err alik
 constexpr double kSlightTilt = 0.04;  // below which the view is as good as frontal to begin with [rad]
 constexpr double kUsualBall = 0.05;   // radius of a ball in shell radii, where neither is known
 constexpr double kShellShare = 0.9;   // of the shell in what turns, roughly
+constexpr double kClearTurn = 0.2;    // coherence of a ring whose turn is beyond doubt
+constexpr double kFrontShare = 0.7;   // of the rim's radius, outside of which marks are in the plane of the glass
+constexpr double kRoughTurn = 0.02;   // by which first angles may be off [rad]
+constexpr double kCovered = 1.7;      // times by which a piece looks less like itself than usual where balls cover it
+constexpr double kEnough = 0.35;      // of the pieces of one band
 constexpr double kFinestBlur = 0.7;   // [px]
 
 struct Sample {
   std::vector<cv::Mat> greys;
   cv::Mat mean, deviation;
+  cv::Mat coarse_deviation;  // of pictures of half the size, in which noise has averaged out; size as the others
   cv::Size film_size;
   int reduced = 1;
   double fps = kNotGiven;
@@ -40,25 +46,36 @@ struct Sample {
 Sample read_sample(const NextPicture& next, double frames_per_second, const Progress& progress) {
   Sample sample;
   sample.fps = frames_per_second;
-  cv::Mat picture, sum, squares;
+  cv::Mat picture, sum, squares, half, half_sum, half_squares;
   while (static_cast<int>(sample.greys.size()) < kMostFrames && next(picture)) {
     sample.film_size = picture.size();
-    sample.reduced = std::max(1, (picture.cols + kWidestPicture - 1) / kWidestPicture);
+    sample.reduced = std::max(1, (picture.cols + kUsualWidth / 2) / kUsualWidth);
     cv::Mat grey = reduced_grey(picture, sample.reduced);
     if (sum.empty()) {
       sum = cv::Mat::zeros(grey.size(), CV_32F);
       squares = cv::Mat::zeros(grey.size(), CV_32F);
+      half_sum = cv::Mat::zeros(grey.rows / 2, grey.cols / 2, CV_32F);
+      half_squares = half_sum.clone();
     }
     cv::accumulate(grey, sum);
     cv::accumulateSquare(grey, squares);
+    cv::resize(grey, half, half_sum.size(), 0, 0, cv::INTER_AREA);
+    cv::accumulate(half, half_sum);
+    cv::accumulateSquare(half, half_squares);
     sample.greys.push_back(grey);
     report(progress, 0.5 * static_cast<double>(sample.greys.size()) / kMostFrames);
   }
   if (sample.greys.empty()) return sample;
   const double n = static_cast<double>(sample.greys.size());
+  const auto deviation = [&](const cv::Mat& total, const cv::Mat& total_squares) {
+    const cv::Mat mean = total / n;
+    cv::Mat variance = total_squares / n - mean.mul(mean);
+    cv::sqrt(cv::max(variance, 0), variance);
+    return variance;
+  };
   sample.mean = sum / n;
-  cv::Mat variance = squares / n - sample.mean.mul(sample.mean);
-  cv::sqrt(cv::max(variance, 0), sample.deviation);
+  sample.deviation = deviation(sum, squares);
+  cv::resize(deviation(half_sum, half_squares), sample.coarse_deviation, sample.mean.size(), 0, 0, cv::INTER_LINEAR);
   return sample;
 }
 
@@ -130,9 +147,35 @@ DrumTurn first_turn(const Sample& sample, const DrumPose& pose, const PolarGrid&
   return follow_turn(std::move(spectra), expected_step);
 }
 
+// The part of a disc to be unrolled, from a share of its radius to somewhat beyond.
+PolarGrid ring_grid(double radius, double inner) {
+  PolarGrid grid;
+  grid.inner = std::round(inner * radius);
+  grid.rows = static_cast<int>(std::ceil((1.14 - inner) * radius / 6)) * 6;
+  grid.columns = radius < 230 ? 1024 : 2048;
+  return grid;
+}
+
+// Radius within which things turn with the drum.
+double textured_reach(const Sample& sample, const DrumPose& pose, const PolarGrid& grid, const DrumTurn& turn) {
+  std::vector<cv::Mat> greys;
+  std::vector<double> angles;
+  const std::size_t n = sample.greys.size(), every = std::max<std::size_t>(1, n / 60);
+  for (std::size_t t = 0; t < n; t += every) {
+    greys.push_back(sample.greys[t]);
+    angles.push_back(turn.angles[t]);
+  }
+  const DrumReader reader(pose, grid, sample.reduced, greys, angles, 2.0, 0);
+  double most = 0;
+  for (int r = 0; r < grid.rows; ++r) most = std::max(most, reader.texture().coherence(r));
+  int last = grid.rows - 1;
+  while (last > 0 && reader.texture().coherence(last) < 0.3 * most) --last;
+  return grid.radius(last + 1);
+}
+
 // Where the texture was found, and the edges that go round with it.
 DrumSightings look(const DrumReader& reader, const std::vector<double>& angles, const cv::Mat& mean, int margin,
-                   double reach) {
+                   double reach, double rim) {
   DrumSightings seen;
   const DrumTexture& texture = reader.texture();
   double innermost = 1e9;
@@ -142,17 +185,39 @@ DrumSightings look(const DrumReader& reader, const std::vector<double>& angles, 
   }
   if (seen.pieces.empty()) return seen;
   seen.layers = texture.surface(0) + 1;
-  for (std::size_t t = 0; t < angles.size(); ++t) {
-    const auto found = texture.find(reader.strips()[t], angles[t]);
-    for (int k = 0; k < texture.pieces(); ++k) {
-      const auto& f = found[static_cast<std::size_t>(k)];
-      if (f.seen) seen.sightings.push_back({static_cast<int>(t), k, texture.pixel_of(k, angles[t], f), f.weight});
+  std::vector<std::vector<DrumTexture::Found>> found;
+  for (std::size_t t = 0; t < angles.size(); ++t) found.push_back(texture.find(reader.strips()[t], angles[t]));
+  std::size_t in_front = 0;
+  for (int k = 0; k < texture.pieces(); ++k) {
+    const auto piece = static_cast<std::size_t>(k);
+    std::vector<double> rests;
+    for (const auto& f : found)
+      if (f[piece].seen) rests.push_back(f[piece].grey_deviation);
+    if (rests.empty()) continue;
+    const auto clear = rests.begin() + static_cast<std::ptrdiff_t>(rests.size() / 4);
+    std::nth_element(rests.begin(), clear, rests.end());
+    for (std::size_t t = 0; t < angles.size(); ++t) {
+      const auto& f = found[t][piece];
+      if (!f.seen || f.grey_deviation > kCovered * *clear) continue;
+      seen.sightings.push_back({static_cast<int>(t), k, texture.pixel_of(k, angles[t], f), f.weight});
+      in_front += seen.pieces[piece].layer == 0;
     }
   }
-  // Edges of the outermost surface: it is the plane z = 0.
+  // Inside the shell the charge lies against whatever turns, always on the same side: the surface outside of it says
+  // less that is wrong, where it says enough.
+  if (static_cast<double>(in_front) > kEnough * static_cast<double>(angles.size()) * DrumTexture::kPieces)
+    std::erase_if(seen.sightings,
+                  [&](const PieceSighting& s) { return seen.pieces[static_cast<std::size_t>(s.piece)].layer > 0; });
+  // The outermost surface is the plane z = 0, and the edges next to it are in it; but what lies far inside the rim is
+  // on the back plate, at a depth of its own.
   const PolarGrid& grid = reader.unroll().grid();
-  const auto rings =
-      find_rings(mean, reader.unroll().pose(), innermost - margin - reach - kBorder, grid.radius(grid.rows - 1), reach);
+  double from = innermost - margin - reach - kBorder;
+  if (innermost < kFrontShare * rim) {
+    for (DrumPiece& p : seen.pieces) ++p.layer;
+    ++seen.layers;
+    from = 0.8 * rim;
+  }
+  const auto rings = find_rings(mean, reader.unroll().pose(), from, grid.radius(grid.rows - 1), reach);
   seen.rings = sightings_of(rings);
   return seen;
 }
@@ -163,7 +228,7 @@ struct Camera {
   std::vector<std::size_t> frames;  // those whose angles the fit holds
 };
 
-Camera fit_camera(const Sample& sample, const DrumPose& start, const PolarGrid& grid, const DrumTurn& turn,
+Camera fit_camera(const Sample& sample, const DrumPose& start, const PolarGrid& grid, const DrumTurn& turn, double rim,
                   PosePrior prior, const Progress& progress) {
   Camera camera;
   const std::size_t n = sample.greys.size(), count = std::min<std::size_t>(n, kPoseFrames);
@@ -185,7 +250,7 @@ Camera fit_camera(const Sample& sample, const DrumPose& start, const PolarGrid& 
   double done = 0.5;
   for (const Stage& stage : kStages) {
     const DrumReader reader(camera.fit.pose, grid, sample.reduced, greys, camera.fit.angles, stage.blur, stage.margin);
-    const DrumSightings seen = look(reader, camera.fit.angles, sample.mean, stage.margin, stage.reach);
+    const DrumSightings seen = look(reader, camera.fit.angles, sample.mean, stage.margin, stage.reach, rim);
     if (seen.sightings.size() < kFewestSightings) return camera;
     camera.fit = fit_pose(seen, camera.fit.pose, camera.fit.angles, camera.fit.depths, prior);
     report(progress, done += 0.06);
@@ -279,25 +344,32 @@ DrumView calibrate_drum(const NextPicture& next, double frames_per_second, const
     return view;
   };
   if (sample.greys.size() < kFewestFrames) return refuse("the film is too short to see a drum turn");
-  const TurningDisc disc = find_turning_disc(sample.mean, sample.deviation);
+  TurningDisc disc = find_turning_disc(sample.mean, sample.coarse_deviation);
   if (!disc.found) return refuse("no turning drum was found in the film");
+  PosePrior prior = usual_camera(sample.mean.size(), disc.radius);
   PolarGrid grid;
-  grid.inner = std::round(0.70 * disc.radius);
-  grid.rows = static_cast<int>(std::ceil(0.44 * disc.radius / 6)) * 6;
-  grid.columns = disc.radius < 230 ? 1024 : 2048;
-  const PosePrior prior = usual_camera(sample.mean.size(), disc.radius);
   DrumPose start;
   DrumTurn turn;
-  for (const DrumPose& pose : likely_poses(sample, disc, prior)) {
-    DrumTurn seen = first_turn(sample, pose, grid, speed_rpm(known.mill) * 2 * kPi / 60 / sample.fps);
-    if (seen.coherence <= turn.coherence) continue;
-    turn = std::move(seen);
-    start = pose;
+  const double expected = speed_rpm(known.mill) * 2 * kPi / 60 / sample.fps;
+  const auto poses = likely_poses(sample, disc, prior);
+  for (double inner : {0.70, 0.15}) {  // flange, shell and lifters; else marks on the back plate may tell
+    grid = ring_grid(disc.radius, inner);
+    for (const DrumPose& pose : poses) {
+      DrumTurn seen = first_turn(sample, pose, grid, expected);
+      if (seen.coherence <= turn.coherence) continue;
+      turn = std::move(seen);
+      start = pose;
+    }
+    if (turn.coherence > kClearTurn) break;
   }
   if (!turn.found) return refuse("nothing in the film turns about a common axis");
   if (std::abs(turn.angles.back() - turn.angles.front()) < kLeastTurn)
     return refuse("the drum hardly turns while it is filmed");
-  const Camera camera = fit_camera(sample, start, grid, turn, prior, progress);
+  // Other things move too: the drum reaches as far as anything turns with it.
+  const double reach = textured_reach(sample, start, grid, turn);
+  if (reach < 0.92 * disc.radius) disc.radius = reach;
+  if (reach > kFrontShare * disc.radius) grid = ring_grid(disc.radius, 0.70);
+  const Camera camera = fit_camera(sample, start, grid, turn, disc.radius, prior, progress);
   if (!camera.found) return refuse("too little of the drum shows marks that turn with it");
   const DrumPose& pose = camera.fit.pose;
 
@@ -305,11 +377,13 @@ DrumView calibrate_drum(const NextPicture& next, double frames_per_second, const
   std::vector<cv::Mat> greys;
   for (std::size_t i : camera.frames) greys.push_back(sample.greys[i]);
   auto reader = std::make_shared<DrumReader>(pose, grid, sample.reduced, greys, camera.fit.angles, kFinestBlur, 2);
-  double offset = camera.fit.angles[0] - turn.angles[0];
-  for (std::size_t t = 0; t < sample.greys.size(); ++t) {
-    view.angles.push_back(reader->angle_in(reader->unroll()(sample.greys[t]), turn.angles[t] + offset));
-    offset = view.angles.back().angle - turn.angles[t];
-  }
+  std::vector<double> offsets;  // of the fitted angles from the first ones
+  for (std::size_t i = 0; i < camera.frames.size(); ++i)
+    offsets.push_back(camera.fit.angles[i] - turn.angles[camera.frames[i]]);
+  std::nth_element(offsets.begin(), offsets.begin() + static_cast<std::ptrdiff_t>(offsets.size() / 2), offsets.end());
+  const double offset = offsets[offsets.size() / 2];
+  for (std::size_t t = 0; t < sample.greys.size(); ++t)
+    view.angles.push_back(reader->angle_near(reader->unroll()(sample.greys[t]), turn.angles[t] + offset, kRoughTurn));
   view.turn_per_frame = turn_per_frame(view.angles, turn.step);
   view.readout = {pose.twist() / turn.step,
                   std::sqrt(camera.fit.covariance(DrumPose::kTwist, DrumPose::kTwist)) / std::abs(turn.step)};

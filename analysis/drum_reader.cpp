@@ -30,11 +30,15 @@ DrumReader::DrumReader(const DrumPose& pose, const PolarGrid& grid, int reduced,
 }
 
 DrumAngle DrumReader::operator()(const cv::Mat& bgr, double expected) const {
-  return angle_in(unroll_(reduced_grey(bgr, reduced_)), expected);
+  const cv::Mat strip = unroll_(reduced_grey(bgr, reduced_));
+  return refined(strip, angle_of(pattern_, RoundSpectrum(texture_->moving_part(strip)), expected));
 }
 
-DrumAngle DrumReader::angle_in(const cv::Mat& strip, double expected) const {
-  const double rough = angle_of(pattern_, RoundSpectrum(texture_->moving_part(strip)), expected);
+DrumAngle DrumReader::angle_near(const cv::Mat& strip, double expected, double reach) const {
+  return refined(strip, analysis::angle_near(pattern_, RoundSpectrum(texture_->moving_part(strip)), expected, reach));
+}
+
+DrumAngle DrumReader::refined(const cv::Mat& strip, double rough) const {
   const double pitch = unroll_.grid().pitch();
   DrumAngle result{rough, kNotGiven, 0};
   const auto found = texture_->find(strip, rough);

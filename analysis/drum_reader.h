@@ -28,7 +28,8 @@ class DrumReader {
   // A picture of the film, as FilmReader hands it out; the angle next to `expected` where the texture repeats itself.
   DrumAngle operator()(const cv::Mat& bgr, double expected) const;
 
-  DrumAngle angle_in(const cv::Mat& strip, double expected) const;
+  // Within `reach` of an angle that is known roughly [rad].
+  DrumAngle angle_near(const cv::Mat& strip, double expected, double reach) const;
   const Unroller& unroll() const { return unroll_; }
   const StillPart& still() const { return *still_; }
   const DrumTexture& texture() const { return *texture_; }
@@ -36,6 +37,8 @@ class DrumReader {
   void forget_strips() { strips_.clear(); }
 
  private:
+  DrumAngle refined(const cv::Mat& strip, double rough) const;
+
   Unroller unroll_;
   int reduced_;
   std::vector<cv::Mat> strips_;

@@ -13,7 +13,7 @@ namespace {
 constexpr double kLeastTexture = 1.0;  // deviation of a piece's greys below which it is not followed [grey levels]
 constexpr double kLeastPower = 0.5;    // of a row's changes [grey levels squared]: below is noise
 constexpr double kTextured = 0.6;      // of the best row's share of texture in what moves
-constexpr int kLeastRows = 5, kMostRows = 14;  // of a band
+constexpr int kLeastRows = 4, kMostRows = 14;  // of a band
 constexpr double kBestDeviation = 0.03;        // no piece is better placed than this [px]: interpolation, compression
 
 cv::Mat blurred(const cv::Mat& strip, double blur) {  // the ring closes on itself
@@ -114,14 +114,15 @@ void DrumTexture::finish(int margin) {
   }
   // Runs of rows whose changes are mostly texture, without their margins, in bands of nearly equal height.
   for (int r = 0; r < g.rows;) {
-    const auto textured = [&](int row) { return coherence_[static_cast<std::size_t>(row)] > kTextured * best; };
+    const auto textured = [&](int row) { return coherence(row) > kTextured * best; };
     if (best == 0 || !textured(r)) {
       ++r;
       continue;
     }
     const int first = r;
     while (r < g.rows && textured(r)) ++r;
-    const int from = first == 0 ? 0 : first + margin, rows = (r == g.rows ? r : r - margin) - from;
+    const int thin = std::max(0, std::min(margin, (r - first - kLeastRows) / 2));
+    const int from = first == 0 ? 0 : first + thin, rows = (r == g.rows ? r : r - thin) - from;
     if (rows < kLeastRows) continue;
     const int parts = (rows + kMostRows - 1) / kMostRows;
     for (int i = 0; i < parts; ++i) bands_.emplace_back(from + i * rows / parts, from + (i + 1) * rows / parts);

@@ -14,6 +14,7 @@ constexpr int kTogether = 3;         // bands that are followed by themselves at
 constexpr int kLeastOrder = 2;       // light that changes is of the lowest orders
 constexpr double kGreyNoise = 0.5;   // of a group's mean [grey levels]: bands in which nothing moves have no say
 constexpr std::size_t kTrial = 80;   // pictures that show which of several turns is the drum's
+constexpr double kStill = 0.03;      // turn during the trial below which nothing turns [rad]
 constexpr double kUnsteady = 0.08;   // of the turn from picture to picture, as a share
 constexpr double kNearEqual = 0.85;  // of the best match
 
@@ -217,7 +218,9 @@ DrumTurn follow_turn(std::vector<RoundSpectrum> pictures, double expected_step) 
     for (const RoundSpectrum& p : pictures) some.push_back(p.bands(range));
     const double s = commonest_turn(some, std::abs(expected_step) / pitch);
     if (std::isnan(s)) continue;
-    turned_back(some, follow(some, s, std::min(n, kTrial)), coherence);
+    const auto angles = follow(some, s, std::min(n, kTrial));
+    if (std::abs(angles.back()) < kStill) continue;  // noise that the film's compression keeps from picture to picture
+    turned_back(some, angles, coherence);
     const double best = *std::max_element(coherence.begin(), coherence.end());
     if (best <= most) continue;
     most = best;
@@ -266,6 +269,12 @@ double angle_of(const RoundSpectrum& pattern, const RoundSpectrum& picture, doub
     best = angle;
   }
   return best;
+}
+
+double angle_near(const RoundSpectrum& pattern, const RoundSpectrum& picture, double expected, double reach) {
+  const auto match = pattern.match(picture);
+  const double pitch = 2 * kPi / static_cast<double>(match.size());
+  return best_within(match, expected / pitch, reach / pitch).shift * pitch;
 }
 
 }  // namespace tumble::analysis

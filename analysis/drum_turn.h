@@ -47,4 +47,7 @@ DrumTurn follow_turn(std::vector<RoundSpectrum> pictures, double expected_step);
 // Angle of one picture against a pattern [rad]: the best match, of near equals the nearest to `expected`.
 double angle_of(const RoundSpectrum& pattern, const RoundSpectrum& picture, double expected);
 
+// The best match within `reach` of `expected` [rad].
+double angle_near(const RoundSpectrum& pattern, const RoundSpectrum& picture, double expected, double reach);
+
 }  // namespace tumble::analysis
