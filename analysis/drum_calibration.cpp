@@ -17,9 +17,10 @@
 namespace tumble::analysis {
 namespace {
 
-constexpr int kMostFrames = 300;  // looked at
-constexpr int kUsualWidth = 640;  // of pictures after reduction [px]: 300 of them are some 70 MB, never 150
-constexpr int kPoseFrames = 100;  // of them, for the camera
+constexpr int kMostFrames = 300;           // looked at
+constexpr int kUsualWidth = 640;           // of pictures after reduction [px]: 300 of them are some 70 MB, never 150
+constexpr std::size_t kTrialFrames = 150;  // of them, to choose between views
+constexpr int kPoseFrames = 100;           // of them, for the camera
 constexpr std::size_t kFewestFrames = 8, kFewestSightings = 400;
 constexpr double kLeastTurn = 0.1;    // of the drum during the film, to tell what turns from what stands still [rad]
 constexpr double kBorder = 10;        // within which an edge belongs to the textured surface [px]
@@ -32,6 +33,8 @@ constexpr double kFrontShare = 0.7;   // of the rim's radius, outside of which m
 constexpr double kRoughTurn = 0.02;   // by which first angles may be off [rad]
 constexpr double kCovered = 1.7;      // times by which a piece looks less like itself than usual where balls cover it
 constexpr double kEnough = 0.35;      // of the pieces of one band
+constexpr double kSameTilt = 0.05;    // between views that are one [rad]
+constexpr double kClearMisfit = 0.1;  // between views, of which one is clearly better
 constexpr double kFinestBlur = 0.7;   // [px]
 
 struct Sample {
@@ -136,10 +139,12 @@ std::vector<DrumPose> likely_poses(const Sample& sample, const TurningDisc& disc
 }
 
 // The drum's angles as far as a first view tells them.
-DrumTurn first_turn(const Sample& sample, const DrumPose& pose, const PolarGrid& grid, double expected_step) {
+DrumTurn first_turn(const Sample& sample, const DrumPose& pose, const PolarGrid& grid, double expected_step,
+                    std::size_t most_pictures) {
   const Unroller unroll(pose, grid);
   std::vector<cv::Mat> strips;
-  for (const cv::Mat& grey : sample.greys) strips.push_back(unroll(grey));
+  for (std::size_t t = 0; t < std::min(most_pictures, sample.greys.size()); ++t)
+    strips.push_back(unroll(sample.greys[t]));
   const StillPart still = find_still_part(strips);
   const DrumTexture blank(unroll, still, 1.5);
   std::vector<RoundSpectrum> spectra;
@@ -186,7 +191,7 @@ DrumSightings look(const DrumReader& reader, const std::vector<double>& angles, 
   if (seen.pieces.empty()) return seen;
   seen.layers = texture.surface(0) + 1;
   std::vector<std::vector<DrumTexture::Found>> found;
-  for (std::size_t t = 0; t < angles.size(); ++t) found.push_back(texture.find(reader.strips()[t], angles[t]));
+  for (std::size_t t = 0; t < angles.size(); ++t) found.push_back(texture.find(reader.moving()[t], angles[t]));
   std::size_t in_front = 0;
   for (int k = 0; k < texture.pieces(); ++k) {
     const auto piece = static_cast<std::size_t>(k);
@@ -224,9 +229,26 @@ DrumSightings look(const DrumReader& reader, const std::vector<double>& angles, 
 
 struct Camera {
   bool found = false;
+  bool ambiguous = false;  // the drum may be seen from the other side of its axis as well
   PoseFit fit;
   std::vector<std::size_t> frames;  // those whose angles the fit holds
 };
+
+// A view from the other side of the axis, read out otherwise, is nearly the same picture. Few marks in much noise leave
+// it open.
+void look_from_the_other_side(const DrumSightings& seen, const PosePrior& prior, Camera& camera) {
+  DrumPose mirrored = camera.fit.pose;
+  for (int p : {DrumPose::kTiltX, DrumPose::kTiltY}) mirrored.numbers[p] *= -1.5;
+  mirrored.numbers[DrumPose::kTwist] = 0;
+  PoseFit other = fit_pose(seen, mirrored, camera.fit.angles, camera.fit.depths, prior);
+  const DrumPose::Numbers apart = other.pose.numbers - camera.fit.pose.numbers;
+  if (std::hypot(apart[DrumPose::kTiltX], apart[DrumPose::kTiltY]) < kSameTilt) return;
+  const double gain = camera.fit.misfit - other.misfit;
+  if (gain > 0) camera.fit = std::move(other);
+  if (std::abs(gain) > kClearMisfit) return;
+  camera.ambiguous = true;
+  camera.fit.covariance += apart * apart.transpose();
+}
 
 Camera fit_camera(const Sample& sample, const DrumPose& start, const PolarGrid& grid, const DrumTurn& turn, double rim,
                   PosePrior prior, const Progress& progress) {
@@ -248,38 +270,45 @@ Camera fit_camera(const Sample& sample, const DrumPose& start, const PolarGrid& 
   constexpr std::array<Stage, 6> kStages{
       {{3.0, 4, 4.0}, {2.0, 3, 2.5}, {1.2, 2, 2.0}, {0.7, 2, 1.5}, {0.7, 2, 1.5}, {0.7, 2, 1.5}}};
   double done = 0.5;
+  DrumSightings last;
   for (const Stage& stage : kStages) {
     const DrumReader reader(camera.fit.pose, grid, sample.reduced, greys, camera.fit.angles, stage.blur, stage.margin);
-    const DrumSightings seen = look(reader, camera.fit.angles, sample.mean, stage.margin, stage.reach, rim);
+    DrumSightings seen = look(reader, camera.fit.angles, sample.mean, stage.margin, stage.reach, rim);
     if (seen.sightings.size() < kFewestSightings) return camera;
     camera.fit = fit_pose(seen, camera.fit.pose, camera.fit.angles, camera.fit.depths, prior);
     report(progress, done += 0.06);
+    last = std::move(seen);
   }
+  look_from_the_other_side(last, prior, camera);
   camera.found = true;
   return camera;
 }
 
 // Commonest turn from picture to picture: the slope of the angles against the number of such turns, which repeated and
 // missing pictures make 0 or 2.
-Estimate turn_per_frame(const std::vector<DrumAngle>& angles, double step) {
-  std::vector<double> count{0.0};
-  for (std::size_t t = 1; t < angles.size(); ++t)
-    count.push_back(count.back() + std::round((angles[t].angle - angles[t - 1].angle) / step));
+Estimate turn_per_frame(const std::vector<DrumAngle>& all, double step) {
+  std::vector<double> count, angles;
+  for (const DrumAngle& a : all) {
+    const double turns = angles.empty() ? 0 : (a.angle - angles.back()) / step;
+    if (std::isnan(a.error) || std::abs(turns - std::round(turns)) > 0.3) continue;  // not seen well
+    count.push_back(angles.empty() ? 0 : count.back() + std::round(turns));
+    angles.push_back(a.angle);
+  }
   const double n = static_cast<double>(count.size());
   double mx = 0, my = 0, xx = 0, xy = 0;
   for (std::size_t t = 0; t < count.size(); ++t) {
     mx += count[t] / n;
-    my += angles[t].angle / n;
+    my += angles[t] / n;
   }
   for (std::size_t t = 0; t < count.size(); ++t) {
     xx += (count[t] - mx) * (count[t] - mx);
-    xy += (count[t] - mx) * (angles[t].angle - my);
+    xy += (count[t] - mx) * (angles[t] - my);
   }
   if (!(xx > 0)) return {step, kNotGiven};
   const double slope = xy / xx;
   double squares = 0, neighbours = 0, last = 0;
   for (std::size_t t = 0; t < count.size(); ++t) {
-    const double rest = angles[t].angle - my - slope * (count[t] - mx);
+    const double rest = angles[t] - my - slope * (count[t] - mx);
     squares += rest * rest;
     if (t > 0) neighbours += rest * last;
     last = rest;
@@ -355,13 +384,15 @@ DrumView calibrate_drum(const NextPicture& next, double frames_per_second, const
   for (double inner : {0.70, 0.15}) {  // flange, shell and lifters; else marks on the back plate may tell
     grid = ring_grid(disc.radius, inner);
     for (const DrumPose& pose : poses) {
-      DrumTurn seen = first_turn(sample, pose, grid, expected);
+      DrumTurn seen = first_turn(sample, pose, grid, expected, poses.size() > 1 ? kTrialFrames : kMostFrames);
       if (seen.coherence <= turn.coherence) continue;
       turn = std::move(seen);
       start = pose;
     }
     if (turn.coherence > kClearTurn) break;
   }
+  if (turn.angles.size() < sample.greys.size() && turn.found)
+    turn = first_turn(sample, start, grid, expected, kMostFrames);
   if (!turn.found) return refuse("nothing in the film turns about a common axis");
   if (std::abs(turn.angles.back() - turn.angles.front()) < kLeastTurn)
     return refuse("the drum hardly turns while it is filmed");
@@ -440,8 +471,10 @@ DrumView calibrate_drum(const NextPicture& next, double frames_per_second, const
   const double deep = ball > 0 && mill_radius > 0 ? 2 * ball / mill_radius * shell.radius : 0.1 * shell.radius;
   view.hidden_share = hidden_share(hidden, pose, tip - deep, tip);
   cv::resize(hidden, view.hidden, sample.film_size, 0, 0, cv::INTER_NEAREST);
-  reader->forget_strips();
+  reader->forget_pictures();
   view.reader = reader;
+  if (camera.ambiguous)
+    view.caveats.push_back("too few marks turn with the drum to tell from which side of the axis it is filmed");
   if (disc.moving_besides > 0.5)
     view.caveats.push_back("much moves outside of the drum: if the film shows two mills, crop it to one");
   view.found = true;

@@ -20,7 +20,7 @@ constexpr double kSettled = 1e-3;  // of the cost
 constexpr double kHuge = 4;        // chi2 beyond which a sighting loses its say (Cauchy)
 
 constexpr int kDirections = 12;           // round the axis, in which sightings err alike
-constexpr double kAlike = 0.1;            // by so much [px]
+constexpr double kAlike = 0.1;            // by so much at least [px]
 constexpr double kLightShift = 0.2;       // of the whole texture against what it is on [px]
 constexpr std::size_t kFewSightings = 8;  // of a piece
 // Of a piece's place against its rough one [px]: along the radius next to nothing, for all pieces may lie further out
@@ -125,11 +125,24 @@ class Adjustment {
   }
 
   Index unknowns() const { return unknowns_; }
+  double misfit() const {
+    double sum = 0, count = 0;
+    for (double s : sigma2_)
+      if (!std::isnan(s)) {
+        sum += std::log(s);
+        ++count;
+      }
+    return count > 0 ? sum / count : 0;
+  }
   // How far off a piece's typical sighting is, in its own standard errors: bolts, whose light and shade stay where they
   // are while they pass, more than rust. And how much say the sightings of a layer have.
-  void weigh(const State& s) {
+  // By how much they err alike in one direction shows once the pose is fitted.
+  void weigh(const State& s, bool fitted) {
     const MillCamera camera = s.pose.camera();
     std::vector<double> total(say_.size(), 0.0);
+    using Means = std::array<Eigen::Vector3d, kDirections>;  // sums of misses and their number, by direction
+    std::vector<Means> alike(say_.size());
+    for (Means& m : alike) m.fill(Eigen::Vector3d::Zero());
     for (std::size_t k = 0; k < of_piece_.size(); ++k) {
       std::vector<double> chi2;
       double weights = 0;
@@ -138,6 +151,10 @@ class Adjustment {
         const Aspect at = aspect(s, camera, sighting);
         chi2.push_back(at.miss.dot(sighting.weight * at.miss));
         weights += 0.5 * sighting.weight.trace();
+        const double turn = std::atan2(at.si, at.co) / (2 * kPi) + 1;
+        Eigen::Vector3d& mean = alike[static_cast<std::size_t>(seen_.pieces[k].layer)]
+                                     [static_cast<std::size_t>(turn * kDirections) % kDirections];
+        if (at.miss.squaredNorm() < 4) mean += Eigen::Vector3d(at.miss.x(), at.miss.y(), 1);
       }
       if (chi2.size() < kFewSightings) {
         sigma2_[k] = kNotGiven;
@@ -148,7 +165,16 @@ class Adjustment {
       sigma2_[k] = std::max(1.0, *middle / 1.386);  // the median of chi2 with two degrees of freedom
       total[static_cast<std::size_t>(seen_.pieces[k].layer)] += weights / sigma2_[k];
     }
-    for (std::size_t l = 0; l < say_.size(); ++l) say_[l] = 1 / (1 + total[l] / kDirections * kAlike * kAlike);
+    for (std::size_t l = 0; l < say_.size(); ++l) {
+      double squares = 0, seen = 0;
+      for (const Eigen::Vector3d& m : alike[l]) {
+        if (m.z() < 5) continue;
+        squares += m.head<2>().squaredNorm() / (m.z() * m.z());
+        seen += 2;
+      }
+      const double left = fitted ? squares / std::max(1.0, seen - kPose) : 0;
+      say_[l] = 1 / (1 + total[l] / kDirections * std::max(left, kAlike * kAlike));
+    }
   }
 
   Equations equations(const State& s) const {
@@ -333,7 +359,7 @@ PoseFit fit_pose(const DrumSightings& seen, const DrumPose& start, const std::ve
   Adjustment adjustment(seen, prior, angles.size());
   Equations equations;
   for (int pass = 0; pass < kPasses; ++pass) {  // weights anew, once the pose is better
-    adjustment.weigh(state);
+    adjustment.weigh(state, pass > 0);
     equations = adjustment.equations(state);
     double damping = 1e-4;
     for (int round = 0; round < kRounds && damping < 1e4; ++round) {
@@ -350,6 +376,8 @@ PoseFit fit_pose(const DrumSightings& seen, const DrumPose& start, const std::ve
       if (gain < kSettled) break;
     }
   }
+  adjustment.weigh(state, true);
+  equations = adjustment.equations(state);
   PoseFit fit;
   fit.pose = state.pose;
   fit.light_shift = state.light;
@@ -359,6 +387,7 @@ PoseFit fit_pose(const DrumSightings& seen, const DrumPose& start, const std::ve
   const Eigen::MatrixXd normal = equations.normal.selfadjointView<Eigen::Upper>();
   fit.covariance = normal.ldlt().solve(Eigen::MatrixXd::Identity(adjustment.unknowns(), kPose)).topRows<kPose>();
   fit.cost = equations.cost;
+  fit.misfit = adjustment.misfit();
   return fit;
 }
 

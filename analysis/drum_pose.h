@@ -72,7 +72,8 @@ struct PoseFit {
   std::vector<double> depths;                             // z by layer [px]
   std::vector<double> ring_radii;
   Eigen::Matrix<double, DrumPose::kCount, DrumPose::kCount> covariance;
-  double cost = 0;
+  double cost = 0;    // weighted by how well each piece fits
+  double misfit = 0;  // mean log of the pieces' typical chi2: for comparing fits of the same sightings
 };
 
 // Least squares over camera, drum angles and the pieces' places (bundle adjustment on a turning plane), robust.

@@ -24,24 +24,28 @@ DrumReader::DrumReader(const DrumPose& pose, const PolarGrid& grid, int reduced,
   for (const cv::Mat& grey : greys) strips_.push_back(unroll_(grey));
   still_ = std::make_unique<StillPart>(find_still_part(strips_));
   texture_ = std::make_unique<DrumTexture>(unroll_, *still_, blur);
-  for (std::size_t t = 0; t < strips_.size(); ++t) texture_->add(strips_[t], angles[t]);
+  for (std::size_t t = 0; t < strips_.size(); ++t) {
+    moving_.push_back(texture_->moving_part(strips_[t]));
+    texture_->add(moving_.back(), angles[t]);
+  }
   texture_->finish(margin);
   pattern_ = RoundSpectrum(texture_->pattern());
 }
 
 DrumAngle DrumReader::operator()(const cv::Mat& bgr, double expected) const {
-  const cv::Mat strip = unroll_(reduced_grey(bgr, reduced_));
-  return refined(strip, angle_of(pattern_, RoundSpectrum(texture_->moving_part(strip)), expected));
+  const cv::Mat moving = texture_->moving_part(unroll_(reduced_grey(bgr, reduced_)));
+  return refined(moving, angle_of(pattern_, RoundSpectrum(moving), expected));
 }
 
 DrumAngle DrumReader::angle_near(const cv::Mat& strip, double expected, double reach) const {
-  return refined(strip, analysis::angle_near(pattern_, RoundSpectrum(texture_->moving_part(strip)), expected, reach));
+  const cv::Mat moving = texture_->moving_part(strip);
+  return refined(moving, analysis::angle_near(pattern_, RoundSpectrum(moving), expected, reach));
 }
 
-DrumAngle DrumReader::refined(const cv::Mat& strip, double rough) const {
+DrumAngle DrumReader::refined(const cv::Mat& moving, double rough) const {
   const double pitch = unroll_.grid().pitch();
   DrumAngle result{rough, kNotGiven, 0};
-  const auto found = texture_->find(strip, rough);
+  const auto found = texture_->find(moving, rough);
   struct Say {
     double turn, weight;
   };

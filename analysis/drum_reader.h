@@ -34,14 +34,18 @@ class DrumReader {
   const StillPart& still() const { return *still_; }
   const DrumTexture& texture() const { return *texture_; }
   const std::vector<cv::Mat>& strips() const { return strips_; }  // of the pictures learned from
-  void forget_strips() { strips_.clear(); }
+  const std::vector<cv::Mat>& moving() const { return moving_; }  // and of them what does not stand still
+  void forget_pictures() {
+    strips_.clear();
+    moving_.clear();
+  }
 
  private:
-  DrumAngle refined(const cv::Mat& strip, double rough) const;
+  DrumAngle refined(const cv::Mat& moving, double rough) const;
 
   Unroller unroll_;
   int reduced_;
-  std::vector<cv::Mat> strips_;
+  std::vector<cv::Mat> strips_, moving_;
   std::unique_ptr<StillPart> still_;
   std::unique_ptr<DrumTexture> texture_;
   RoundSpectrum pattern_;

@@ -87,8 +87,7 @@ cv::Mat DrumTexture::moving_part(const cv::Mat& strip) const {
   return blurred(moving, blur_);
 }
 
-void DrumTexture::add(const cv::Mat& strip, double angle) {
-  const cv::Mat moving = moving_part(strip);
+void DrumTexture::add(const cv::Mat& moving, double angle) {
   const int n = static_cast<int>(wrapped(columns_of(angle), moving.cols));
   // The drum's column j is seen in column j + n.
   const auto turn = [&](const cv::Mat& from, cv::Mat& to) {
@@ -179,8 +178,7 @@ DrumPiece DrumTexture::piece(int index) const {
   return p;
 }
 
-std::vector<DrumTexture::Found> DrumTexture::find(const cv::Mat& strip, double angle) const {
-  const cv::Mat moving = moving_part(strip);
+std::vector<DrumTexture::Found> DrumTexture::find(const cv::Mat& moving, double angle) const {
   const PolarGrid& g = unroll_->grid();
   const long n = columns_of(angle);
   std::vector<Found> all(static_cast<std::size_t>(pieces()));

@@ -46,9 +46,9 @@ class DrumTexture {
 
   DrumTexture(const Unroller& unroll, const StillPart& still, double blur);
 
-  // Adds a picture at a drum angle; `finish` when all are in: pieces are cut where most of what moves is texture, no
-  // nearer than `margin` rows to where that ends.
-  void add(const cv::Mat& strip, double angle);
+  // Adds the moving part of a picture at a drum angle; `finish` when all are in: pieces are cut where most of what
+  // moves is texture, no nearer than `margin` rows to where that ends.
+  void add(const cv::Mat& moving, double angle);
   void finish(int margin);
 
   const std::vector<cv::Range>& bands() const { return bands_; }  // of rows, innermost first
@@ -65,12 +65,8 @@ class DrumTexture {
     double grey_deviation = 0;
     Eigen::Matrix2d weight;  // inverse covariance [1/px^2]
   };
-  // All pieces in one picture, expected at a drum angle.
-  std::vector<Found> find(const cv::Mat& strip, double angle) const;
-
-  // Angle at which the whole texture matches a picture best, to half a column; `step` < 0 or > 0: only within `reach`
-  // of `expected`.
-  double coarse_angle(const cv::Mat& strip, double expected, double reach) const;
+  // All pieces in the moving part of one picture, expected at a drum angle.
+  std::vector<Found> find(const cv::Mat& moving, double angle) const;
 
   // The picture's place of a sighting.
   cv::Point2d pixel_of(int piece, double angle, const Found& found) const;

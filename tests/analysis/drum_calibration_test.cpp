@@ -95,9 +95,9 @@ const ObliqueFilm& oblique() {
     PaintedDrum drum = seen_from(0.15, -0.1);
     drum.readout = 0.8;
     drum.step = -0.055;
-    std::vector<int> turns(120, 1);
+    std::vector<int> turns(90, 1);
     turns[0] = turns[17] = turns[60] = 0;
-    turns[30] = turns[90] = 2;
+    turns[30] = turns[80] = 2;
     Film film = film_of(drum, turns);
     DrumView view = calibrated(film);
     return ObliqueFilm{std::move(film), std::move(view)};
@@ -155,7 +155,7 @@ TEST(DrumCalibration, NothingIsHiddenWhereNothingStandsInFront) {
 TEST(DrumCalibration, BarIsHiddenAndDoesNotMislead) {
   PaintedDrum drum = seen_from(-0.08, 0.03);
   drum.bar_angle = 2.4;
-  const Film film = film_of(drum, std::vector<int>(100, 1));
+  const Film film = film_of(drum, std::vector<int>(80, 1));
   const DrumView view = calibrated(film);
   ASSERT_TRUE(view.found);
   EXPECT_LT(place_error(view.camera, drum, 0), 0.7e-3);
@@ -168,7 +168,7 @@ TEST(DrumCalibration, BarIsHiddenAndDoesNotMislead) {
 TEST(DrumCalibration, RimOutsideOfThePictureIsNoHindrance) {
   PaintedDrum drum = seen_from(0.06, 0.1);
   drum.camera = camera_for(kPicture, 650, 0.06, 0.1, 0.58 * kPicture.height, drum.rim, {300, 190}, 0.05);
-  const Film film = film_of(drum, std::vector<int>(100, 1));
+  const Film film = film_of(drum, std::vector<int>(80, 1));
   const DrumView view = calibrated(film);
   ASSERT_TRUE(view.found);
   EXPECT_LT(place_error(view.camera, drum, 0), 0.7e-3);

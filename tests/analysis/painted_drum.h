@@ -90,8 +90,8 @@ class DrumPainter {
       const double per = kAngles / (2 * kPi);
       for (int u = 0; u < size.width; ++u) {
         const auto column = [&](float a) {
-          const double c = std::fmod((a - turned) * per, kAngles);
-          return static_cast<float>(c < 0 ? c + kAngles : c);
+          const double c = (a - turned) * per;
+          return static_cast<float>(c - kAngles * std::floor(c / kAngles));
         };
         fx.at<float>(v, u) = column(front_angle_.at<float>(v, u));
         bx.at<float>(v, u) = column(back_angle_.at<float>(v, u));
@@ -125,8 +125,7 @@ class DrumPainter {
     cv::resize(picture, small, bgr.size(), 0, 0, cv::INTER_AREA);
     for (int v = 0; v < bgr.rows; ++v)
       for (int u = 0; u < bgr.cols; ++u) {
-        double grain = 0;
-        for (int k = 0; k < 3; ++k) grain += 2 * (random_.uniform() - 0.5);
+        const double grain = 2 * std::sqrt(3.0) * (random_.uniform() - 0.5);  // variance 1
         const auto g = cv::saturate_cast<uchar>(small.at<float>(v, u) + d_.noise * grain);
         bgr.at<cv::Vec3b>(v, u) = {g, g, g};
       }
