@@ -4,6 +4,8 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
+#include "analysis/ball_rim.h"
+
 namespace tumble::analysis {
 namespace {
 
@@ -12,6 +14,10 @@ constexpr double kCertain = 0.5;        // score of balls from which sizes are l
 constexpr std::size_t kLearnFrom = 4;   // pictures
 constexpr double kLargestShare = 0.22;  // ball radius over drum radius, at most
 constexpr double kLeastShare = 0.012;
+constexpr double kWhole = 0.85;         // visible share of balls from which outlines are learned
+constexpr double kSeenRim = 0.35;       // share of a ball's outline that must be seen
+constexpr double kFarRim = 0.2;         // by which an outline may put a centre right [radii]
+constexpr double kRimDeviation = 0.05;  // of a centre by its outline, at the least [px]
 
 cv::Rect window_of(const Circle& bound, cv::Size size) {
   const int u0 = static_cast<int>(std::floor(bound.u - bound.radius)) - 2;
@@ -162,6 +168,18 @@ BallLook learn_look(BallNet& net, const std::vector<cv::Mat>& pictures, const Ci
   return look;
 }
 
+void learn_rims(BallEyes& eyes, const std::vector<cv::Mat>& pictures, const Circle& bound, BallLook& look) {
+  std::vector<cv::Mat> greys;
+  std::vector<std::vector<std::vector<cv::Point2d>>> centres(look.radii.size());  // by class, picture
+  for (const cv::Mat& picture : pictures) {
+    greys.push_back(grey_of(picture));
+    for (auto& of_class : centres) of_class.emplace_back();
+    for (const Detection& d : detect_balls(eyes, picture, look, bound, kCertain).balls)
+      if (d.visible > kWhole) centres[static_cast<std::size_t>(d.size_class)].back().emplace_back(d.u, d.v);
+  }
+  for (std::size_t c = 0; c < centres.size(); ++c) look.rims.push_back(learn_rim(greys, centres[c], look.radii[c]));
+}
+
 Detections detect_balls(BallEyes& eyes, const cv::Mat& bgr, const BallLook& look, const Circle& bound,
                         double least_score) {
   Detections result;
@@ -180,6 +198,8 @@ Detections detect_balls(BallEyes& eyes, const cv::Mat& bgr, const BallLook& look
         nearest = c;
     classes[nearest].push_back(b);
   }
+  cv::Mat grey;
+  if (std::any_of(look.rims.begin(), look.rims.end(), [](double r) { return !std::isnan(r); })) grey = grey_of(bgr);
   for (std::size_t c = 0; c < classes.size(); ++c) {
     if (classes[c].empty()) continue;
     const Scaled at_size = c == 0 ? scaled : scaled_for(bgr, result.window, look.radii[c]);
@@ -187,6 +207,14 @@ Detections detect_balls(BallEyes& eyes, const cv::Mat& bgr, const BallLook& look
     eyes.refiner.refine(at_size.bgr, classes[c]);
     for (SeenBall& b : classes[c]) {
       at_size.to_picture(b);
+      if (!grey.empty() && !std::isnan(look.rims[c])) {
+        const RimFit fit = fit_rim(grey, {b.u, b.v}, look.rims[c]);
+        if (fit.share > kSeenRim && std::hypot(fit.u - b.u, fit.v - b.v) < kFarRim * look.radii[c]) {
+          b.u = fit.u;
+          b.v = fit.v;
+          b.deviation = std::max(kRimDeviation, fit.spread / std::sqrt(10 * fit.share));
+        }
+      }
       result.balls.push_back({b.u, b.v, look.radii[c], b.score, b.visible, b.deviation, static_cast<int>(c)});
     }
   }

@@ -20,6 +20,7 @@ struct Detection {
 // How large the balls of this film are.
 struct BallLook {
   std::vector<double> radii;  // of the size classes [px], ascending; empty where no balls are seen
+  std::vector<double> rims;   // of the edges of their outlines [px]; NaN where these are not sharp (ball_rim.h)
 };
 
 struct ScaleRange {  // pixels per unit of the known radii
@@ -42,6 +43,9 @@ struct BallEyes {  // what finds balls, and what puts their centres right
   BallNet net;
   BallRefiner refiner;
 };
+
+// Fills look.rims where the film is sharp enough.
+void learn_rims(BallEyes& eyes, const std::vector<cv::Mat>& pictures, const Circle& bound, BallLook& look);
 
 // Balls of these sizes in one picture, with their centres within `bound`.
 Detections detect_balls(BallEyes& eyes, const cv::Mat& bgr, const BallLook& look, const Circle& bound,

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/angle.h"
+
 namespace tumble::analysis {
 namespace {
 
@@ -106,13 +108,50 @@ Estimate sharp_edge(const std::vector<double>& values, double from, double to, i
   return {best.edge, best.sigma / std::sqrt(fresh)};
 }
 
+namespace {
+
+struct Reach {
+  double share = 0;  // of the distance at which a ball lies against the shell
+  double angle = 0;  // [rad]
+};
+
+// Where balls stop in each direction: the size of the circle, and how uneven it is.
+void find_circle(const std::vector<Reach>& reaches, BallPlane& plane) {
+  constexpr int kSectors = 12;
+  constexpr double kUneven = 0.0015;  // of a true circle [its radius]
+  std::vector<std::vector<double>> sectors(kSectors);
+  std::vector<double> all;
+  for (const Reach& r : reaches) {
+    sectors[static_cast<std::size_t>(wrap_360(degrees(r.angle)) / 360 * kSectors) % kSectors].push_back(r.share);
+    all.push_back(r.share);
+  }
+  plane.reach = sharp_edge(all, 0.93, 1.03, -1);
+  std::vector<double> edges;
+  for (const auto& sector : sectors) {
+    const Estimate edge = sharp_edge(sector, 0.93, 1.03, -1);
+    if (!std::isnan(edge.value)) edges.push_back(edge.value);
+  }
+  if (edges.empty()) return;
+  // Where balls leave the shell few reach it: such directions have little say.
+  plane.uneven = 1e9;
+  for (double at = 0.95; at < 1.03; at += 0.0005) {
+    double sum = 0;
+    for (double e : edges) sum += std::log1p(std::pow((e - at) / kUneven, 2));
+    plane.uneven = std::min(plane.uneven, sum);
+  }
+}
+
+}  // namespace
+
 BallPlane measure_ball_plane(const std::vector<SeenFrame>& frames, double mill_radius, const Estimate& prior) {
-  std::vector<double> gaps, reaches;
+  std::vector<double> gaps;
+  std::vector<Reach> reaches;
+
   for (const SeenFrame& f : frames)
     for (std::size_t i = 0; i < f.balls.size(); ++i) {
       const Sighting& a = f.balls[i];
       if (a.visible < 0.85 || a.score < 0.5) continue;
-      reaches.push_back(std::hypot(a.x, a.y) / (mill_radius - a.radius));
+      reaches.push_back({std::hypot(a.x, a.y) / (mill_radius - a.radius), std::atan2(a.y, a.x)});
       for (std::size_t j = i + 1; j < f.balls.size(); ++j) {
         const Sighting& b = f.balls[j];
         if (b.visible < 0.85 || b.score < 0.5) continue;
@@ -122,7 +161,7 @@ BallPlane measure_ball_plane(const std::vector<SeenFrame>& frames, double mill_r
     }
   BallPlane plane;
   plane.touching = sharp_edge(gaps, 0.85, 1.2, +1);
-  plane.reach = sharp_edge(reaches, 0.93, 1.03, -1);
+  find_circle(reaches, plane);
   double weight = 0, sum = 0;
   const auto add = [&](const Estimate& e, double floor) {
     if (std::isnan(e.value)) return;

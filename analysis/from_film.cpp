@@ -77,8 +77,10 @@ Scene make_scene(DrumView drum, const Config& known) {
   return scene;
 }
 
-// Places as for balls that touch the inside of the front glass, as the camera sees them.
-std::vector<SeenFrame> places_of(const std::vector<FilmFrame>& film, const FrameClock& clock, const Scene& scene) {
+// Places as for balls that touch the inside of the front glass, as the camera sees them. `from_afar`: as if it were so
+// far away that depth does not show.
+std::vector<SeenFrame> places_of(const std::vector<FilmFrame>& film, const FrameClock& clock, const Scene& scene,
+                                 bool from_afar) {
   std::vector<SeenFrame> frames(film.size());
   const double readout = std::isnan(scene.drum.readout.value) ? 0.0 : scene.drum.readout.value;
   for (std::size_t f = 0; f < film.size(); ++f) {
@@ -87,7 +89,7 @@ std::vector<SeenFrame> places_of(const std::vector<FilmFrame>& film, const Frame
       const Detection& d = film[f].balls[k];
       Sighting s;
       s.radius = scene.radii[static_cast<std::size_t>(d.size_class)];
-      const Eigen::Vector2d place = mill_place_at(scene.drum.camera, {d.u, d.v}, -s.radius);
+      const Eigen::Vector2d place = mill_place_at(scene.drum.camera, {d.u, d.v}, from_afar ? 0.0 : -s.radius);
       s.x = place.x();
       s.y = place.y();
       if (!(std::hypot(s.x, s.y) + s.radius < scene.radius + 0.4 * s.radius)) continue;
@@ -103,6 +105,14 @@ std::vector<SeenFrame> places_of(const std::vector<FilmFrame>& film, const Frame
     }
   }
   return frames;
+}
+
+// Drawn films show no perspective, whatever is supposed of the camera: seen as through one, the circle in which balls
+// lie against the shell is not about the axis.
+bool drawn_from_afar(const std::vector<SeenFrame>& near, const std::vector<SeenFrame>& afar, const Scene& scene) {
+  constexpr double kClear = 6;  // difference of log likelihoods
+  const auto uneven = [&](const auto& frames) { return measure_ball_plane(frames, scene.radius, {}).uneven; };
+  return uneven(afar) + kClear < uneven(near);
 }
 
 void multiply_places(std::vector<SeenFrame>& frames, double factor) {
@@ -208,12 +218,14 @@ ChargeMotion measure_film(const std::string& path, const FilmOptions& options, c
   if (!drum.found) throw InputError(path, drum.caveats.empty() ? "shows no turning mill" : drum.caveats.front());
   Scene scene = make_scene(std::move(drum), known);
 
-  BallNet net;
+  BallEyes eyes;
   ScaleRange scales;
   if (known.mill.diameter > 0) scales = {0.88 * scene.pixels_per_unit, 1.08 * scene.pixels_per_unit};
-  const BallLook look = learn_look(net, sample_pictures(path), scene.bound, sizes, scales);
+  const std::vector<cv::Mat> sample = sample_pictures(path);
+  BallLook look = learn_look(eyes.net, sample, scene.bound, sizes, scales);
   if (look.radii.empty())
     throw InputError(path, "shows no balls; balls of at least 3 pixels' radius were expected in the mill");
+  learn_rims(eyes, sample, scene.bound, look);
   const std::vector<FilmFrame> film = look_through(path, scene.drum, look, scene.bound, kLeastScore, [&](double done) {
     report(progress, kCalibrateShare + (kPassShare - kCalibrateShare) * done);
   });
@@ -250,7 +262,8 @@ ChargeMotion measure_film(const std::string& path, const FilmOptions& options, c
     scene.radii.push_back(sizes.size() == look.radii.size() && !std::isnan(scene.metres)
                               ? sizes[c] / scene.metres
                               : look.radii[c] / scene.pixels_per_unit);
-  std::vector<SeenFrame> places = places_of(film, clock, scene);
+  std::vector<SeenFrame> places = places_of(film, clock, scene, false);
+  if (drawn_from_afar(places, places_of(film, clock, scene, true), scene)) places = places_of(film, clock, scene, true);
   settle_lengths(places, scene, sizes, motion.caveats);
   drop_impossible(places, known.mill.length / scene.metres);
 
