@@ -177,6 +177,29 @@ BallPlane measure_ball_plane(const std::vector<SeenFrame>& frames, double mill_r
   return plane;
 }
 
+void drop_beyond(std::vector<SeenFrame>& frames, double mill_radius) {
+  constexpr double kSlack = 0.2;  // of the radius
+  for (SeenFrame& f : frames)
+    std::erase_if(f.balls, [&](const Sighting& b) {
+      return std::hypot(b.x, b.y) + b.radius > mill_radius + kSlack * b.radius + 2 * b.deviation;
+    });
+}
+
+bool in_one_layer(const std::vector<SeenFrame>& frames) {
+  constexpr double kFewest = 200, kMostCovering = 0.02;
+  double touching = 0, covering = 0;
+  for (const SeenFrame& f : frames)
+    for (std::size_t i = 0; i < f.balls.size(); ++i)
+      for (std::size_t j = i + 1; j < f.balls.size(); ++j) {
+        const Sighting &a = f.balls[i], &b = f.balls[j];
+        if (std::min(a.score, b.score) < 0.7) continue;
+        const double gap = std::hypot(a.x - b.x, a.y - b.y) / (a.radius + b.radius);
+        touching += gap > 0.9 && gap < 1.1;
+        covering += gap > 0.3 && gap < 0.85;  // nearer ones are one ball seen twice
+      }
+  return touching > kFewest && covering < kMostCovering * touching;
+}
+
 void drop_impossible(std::vector<SeenFrame>& frames, double length) {
   constexpr double kSlack = 0.8;  // of the distance: centres are not exact, and balls are seen in perspective
   if (std::isnan(length)) return;

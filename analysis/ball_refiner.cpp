@@ -6,8 +6,8 @@
 #include "analysis/conv_net.h"
 #include "analysis/net_weights.h"
 
-// Layers (train_ball_refiner.py has the same): 3 x 3 on the patch of 24 px, two 3 x 3 that halve it, a residual 3 x 3,
-// one 6 x 6 that sees all that is left, and five numbers: shift along u and v in radii, log of its deviation, log of
+// Layers (train_ball_refiner.py has the same): 3 x 3 on the patch of 24 px, twice a 3 x 3 that halves it and a residual
+// 3 x 3, one 6 x 6 that sees all that is left, and five numbers: shift along u and v in radii, log of its deviation, log of
 // the radius over the one supposed, visible share.
 namespace tumble::analysis {
 namespace {
@@ -49,10 +49,13 @@ struct BallRefiner::Impl {
 
   Impl() {
     input = net.plain({kBatch, 3, kPatch, kPatch});
-    auto x = net.convolve(net.convolve(net.convolve(input, {16}), {32, 3, 2}), {32, 3, 2});
-    const auto kept = net.copy(x);
-    net.add_convolved(x, kept, {32});
-    x = net.convolve(kept, {.channels = 48, .size = kPatch / 4, .padded = false});
+    auto x = net.convolve(net.convolve(input, {16}), {32, 3, 2});
+    const auto half = net.copy(x);
+    net.add_convolved(x, half, {32});
+    x = net.convolve(half, {64, 3, 2});
+    const auto quarter = net.copy(x);
+    net.add_convolved(x, quarter, {64});
+    x = net.convolve(quarter, {.channels = 64, .size = kPatch / 4, .padded = false});
     x = net.convolve(x, {.channels = kAnswers, .size = 1, .rectify = false});
     output = net.copy(x, net.plain({kBatch, kAnswers, 1, 1}));
     net.check_complete();

@@ -265,7 +265,9 @@ ChargeMotion measure_film(const std::string& path, const FilmOptions& options, c
   std::vector<SeenFrame> places = places_of(film, clock, scene, false);
   if (drawn_from_afar(places, places_of(film, clock, scene, true), scene)) places = places_of(film, clock, scene, true);
   settle_lengths(places, scene, sizes, motion.caveats);
-  drop_impossible(places, known.mill.length / scene.metres);
+  drop_beyond(places, scene.radius);
+  drop_impossible(places,
+                  std::isnan(known.mill.length) && in_one_layer(places) ? 0.0 : known.mill.length / scene.metres);
 
   // Repeats are not linked: each takes over what the frame before it shows.
   std::vector<SeenFrame> frames;

@@ -5,25 +5,55 @@
 #include <map>
 
 #include "analysis/path_linker.h"
+#include "core/angle.h"
 
 namespace tumble::analysis {
 namespace {
 
-// A thing that stays in its place while the drum carries balls by several radii is part of the picture.
-bool stands_still(const Path& path, const std::vector<SeenFrame>& frames, const MotionModel& model) {
-  double x0 = 1e9, x1 = -1e9, y0 = 1e9, y1 = -1e9, reach = 0;
+constexpr double kCentrifuging = 0.1;  // share of all sightings
+
+struct Stay {
+  double turned = 0;          // by the drum meanwhile [rad]
+  double reach = 0;           // largest distance from the axis
+  double wander = 0;          // largest extent of its places, as seen
+  double wander_on_drum = 0;  // the same on the turning drum
+};
+
+Stay stay_of(const Path& path, const std::vector<SeenFrame>& frames, const MotionModel& model) {
+  struct Box {
+    double x0 = 1e9, x1 = -1e9, y0 = 1e9, y1 = -1e9;
+    void add(double x, double y) {
+      x0 = std::min(x0, x);
+      x1 = std::max(x1, x);
+      y0 = std::min(y0, y);
+      y1 = std::max(y1, y);
+    }
+    double extent() const { return std::hypot(x1 - x0, y1 - y0); }
+  } seen, on_drum;
+  Stay stay;
+  const double start = frames[static_cast<std::size_t>(path.seen.front().first)].time;
   for (const auto& [f, k] : path.seen) {
-    const Sighting& s = frames[static_cast<std::size_t>(f)].balls[static_cast<std::size_t>(k)];
-    x0 = std::min(x0, s.x);
-    x1 = std::max(x1, s.x);
-    y0 = std::min(y0, s.y);
-    y1 = std::max(y1, s.y);
-    reach = std::max(reach, std::hypot(s.x, s.y));
+    const SeenFrame& frame = frames[static_cast<std::size_t>(f)];
+    const Sighting& s = frame.balls[static_cast<std::size_t>(k)];
+    const double turn = model.turn * (frame.time - start), c = std::cos(turn), si = std::sin(turn);
+    seen.add(s.x, s.y);
+    on_drum.add(c * s.x + si * s.y, c * s.y - si * s.x);
+    stay.reach = std::max(stay.reach, std::hypot(s.x, s.y));
+    stay.turned = std::abs(turn);
   }
-  const double frames_seen = frames[static_cast<std::size_t>(path.seen.back().first)].time -
-                             frames[static_cast<std::size_t>(path.seen.front().first)].time;
-  const double carried = std::abs(model.turn) * frames_seen * std::max(reach, 4 * path.radius);
-  return carried > 4 * path.radius && std::hypot(x1 - x0, y1 - y0) < 0.3 * path.radius;
+  stay.wander = seen.extent();
+  stay.wander_on_drum = on_drum.extent();
+  return stay;
+}
+
+// A thing that stays in its place while the drum carries balls by several radii is part of the picture.
+bool stands_still(const Path& path, const Stay& stay) {
+  return stay.turned * std::max(stay.reach, 4 * path.radius) > 4 * path.radius && stay.wander < 0.3 * path.radius;
+}
+
+// A thing that keeps its place on the drum while it goes over the top is part of the drum.
+bool rides_the_drum(const Path& path, const Stay& stay) {
+  return stay.turned > radians(200) && stay.wander_on_drum < 0.5 * path.radius;
 }
 
 // What speaks for a path: every sighting by its score, those less likely than not against it.
@@ -44,10 +74,24 @@ int link_sightings(std::vector<SeenFrame>& frames, const MotionModel& model) {
   const std::vector<Path> paths = join_paths(link_frames(frames, model, &flow, noise), frames, model, flow, noise);
   for (SeenFrame& f : frames)
     for (Sighting& s : f.balls) s.track = -1;
-  int id = 0;
+  std::vector<const Path*> believed_ones, riding;
+  double all = 0, ridden = 0;
   for (const Path& path : paths) {
-    if (!believed(path, frames) || stands_still(path, frames, model)) continue;
-    for (const auto& [f, k] : path.seen)
+    const Stay stay = stay_of(path, frames, model);
+    if (!believed(path, frames) || stands_still(path, stay)) continue;
+    all += static_cast<double>(path.seen.size());
+    if (rides_the_drum(path, stay)) {
+      ridden += static_cast<double>(path.seen.size());
+      riding.push_back(&path);
+    } else {
+      believed_ones.push_back(&path);
+    }
+  }
+  // Where much of all that is seen rides the drum, it is a charge that centrifuges.
+  if (ridden > kCentrifuging * all) believed_ones.insert(believed_ones.end(), riding.begin(), riding.end());
+  int id = 0;
+  for (const Path* path : believed_ones) {
+    for (const auto& [f, k] : path->seen)
       frames[static_cast<std::size_t>(f)].balls[static_cast<std::size_t>(k)].track = id;
     ++id;
   }
