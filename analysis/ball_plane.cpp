@@ -115,7 +115,7 @@ struct Reach {
   double angle = 0;  // [rad]
 };
 
-// Where balls stop in each direction: the size of the circle, and how uneven it is.
+// Where balls stop in each direction: the size of the circle, and how even it is.
 void find_circle(const std::vector<Reach>& reaches, BallPlane& plane) {
   constexpr int kSectors = 12;
   constexpr double kUneven = 0.0015;  // of a true circle [its radius]
@@ -136,7 +136,7 @@ void find_circle(const std::vector<Reach>& reaches, BallPlane& plane) {
   plane.uneven = 1e9;
   for (double at = 0.95; at < 1.03; at += 0.0005) {
     double sum = 0;
-    for (double e : edges) sum += std::log1p(std::pow((e - at) / kUneven, 2));
+    for (double edge : edges) sum += std::log1p(std::pow((edge - at) / kUneven, 2));
     plane.uneven = std::min(plane.uneven, sum);
   }
 }

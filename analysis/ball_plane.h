@@ -15,8 +15,9 @@ Estimate sharp_edge(const std::vector<double>& values, double from, double to, i
 struct BallPlane {
   Estimate touching;  // seen over true distance of balls that touch
   Estimate reach;     // seen over true distance from the axis of balls that lie against the shell
-  double uneven = 0;   // how badly the places where they stop in each direction lie on one circle about the axis
-  Estimate factor;     // by which places are to be multiplied; touching and reach together with what was known before
+  double uneven = 0;  // how badly the places where they stop in each direction lie on one circle about the axis
+  Estimate factor;    // by which places are to be multiplied; touching and reach together with
+                      // what was known before
 };
 
 // `frames`: places about the axis with the radii as known; `mill_radius`: of the shell; both in one unit. `prior`: of

@@ -7,8 +7,8 @@
 #include "analysis/net_weights.h"
 
 // Layers (train_ball_refiner.py has the same): 3 x 3 on the patch of 24 px, twice a 3 x 3 that halves it and a residual
-// 3 x 3, one 6 x 6 that sees all that is left, and five numbers: shift along u and v in radii, log of its deviation, log of
-// the radius over the one supposed, visible share.
+// 3 x 3, one 6 x 6 that sees all that is left, and five numbers: shift along u and v in radii, log of its deviation,
+// log of the radius over the one supposed, visible share.
 namespace tumble::analysis {
 namespace {
 

@@ -33,6 +33,8 @@ constexpr double kFrontShare = 0.7;   // of the rim's radius, outside of which m
 constexpr double kRoughTurn = 0.02;   // by which first angles may be off [rad]
 constexpr double kCovered = 1.7;      // times by which a piece looks less like itself than usual where balls cover it
 constexpr double kEnough = 0.35;      // of the pieces of one band
+constexpr double kClearTwist = 3;     // standard errors from which a picture is read out line by line
+constexpr double kNoTwist = 0.005;    // readout that is as good as none [frame periods]
 constexpr double kSameTilt = 0.05;    // between views that are one [rad]
 constexpr double kClearMisfit = 0.1;  // between views, of which one is clearly better
 constexpr double kFinestBlur = 0.7;   // [px]
@@ -280,6 +282,14 @@ Camera fit_camera(const Sample& sample, const DrumPose& start, const PolarGrid& 
     last = std::move(seen);
   }
   look_from_the_other_side(last, prior, camera);
+  // A readout that does not show is none: together with it, the axis would be free to slip sideways.
+  const double error = std::sqrt(camera.fit.covariance(DrumPose::kTwist, DrumPose::kTwist));
+  if (!camera.ambiguous && std::abs(camera.fit.pose.twist()) < kClearTwist * error) {
+    DrumPose at_once = camera.fit.pose;
+    at_once.numbers[DrumPose::kTwist] = 0;
+    prior.deviation[DrumPose::kTwist] = kNoTwist * std::abs(turn.step);
+    camera.fit = fit_pose(last, at_once, camera.fit.angles, camera.fit.depths, prior);
+  }
   camera.found = true;
   return camera;
 }

