@@ -9,6 +9,7 @@ namespace tumble::analysis {
 namespace {
 
 constexpr int kBins = 120;
+constexpr double kLeastReach = 0.90, kMostReach = 1.05;  // what a camera's first scale may be off by
 
 double normal_above(double x) { return 0.5 * std::erfc(x / std::sqrt(2.0)); }
 
@@ -125,16 +126,16 @@ void find_circle(const std::vector<Reach>& reaches, BallPlane& plane) {
     sectors[static_cast<std::size_t>(wrap_360(degrees(r.angle)) / 360 * kSectors) % kSectors].push_back(r.share);
     all.push_back(r.share);
   }
-  plane.reach = sharp_edge(all, 0.93, 1.03, -1);
+  plane.reach = sharp_edge(all, kLeastReach, kMostReach, -1);
   std::vector<double> edges;
   for (const auto& sector : sectors) {
-    const Estimate edge = sharp_edge(sector, 0.93, 1.03, -1);
+    const Estimate edge = sharp_edge(sector, kLeastReach, kMostReach, -1);
     if (!std::isnan(edge.value)) edges.push_back(edge.value);
   }
   if (edges.empty()) return;
   // Where balls leave the shell few reach it: such directions have little say.
   plane.uneven = 1e9;
-  for (double at = 0.95; at < 1.03; at += 0.0005) {
+  for (double at = kLeastReach; at < kMostReach; at += 0.0005) {
     double sum = 0;
     for (double edge : edges) sum += std::log1p(std::pow((edge - at) / kUneven, 2));
     plane.uneven = std::min(plane.uneven, sum);

@@ -50,12 +50,12 @@ std::vector<cv::Mat> read_stills(const std::string& folder) {
 
 // The shell is the circle at which the charge ends; its edge in the picture has its own centre, since in a view that is
 // not quite along the axis the circles of a mill are not concentric.
-void place_shell(MillView& view, const FilmSurvey& survey, double reach, const Config& known) {
+void place_shell(MillView& view, const DrumOutline& outline, double reach, const Config& known) {
   if (!(reach > 0)) return;
   const double metres = view.mill.radius * view.metres_per_pixel;
-  view.mill = {survey.centre.u, survey.centre.v, reach};
+  view.mill = {outline.centre.u, outline.centre.v, reach};
   double best = 0;
-  for (const RingEdge& ring : survey.rings) {
+  for (const RingEdge& ring : outline.rings) {
     const double miss = std::abs(ring.circle.radius / reach - 1) / 0.03;
     const double weight = ring.coverage * std::abs(ring.strength) * (1 - miss * miss);
     if (miss > 1 || weight <= best) continue;
@@ -103,27 +103,27 @@ ChargeMotion measure_stills(const std::string& folder, const FilmOptions& option
         "stills do not show the direction of rotation: taken as counter-clockwise; give --rotation");
   const bool clockwise = motion.rotation == Rotation::kClockwise;
 
-  FilmSurvey survey;
+  DrumOutline outline;
   cv::Mat mean = cv::Mat::zeros(stills[0].size(), CV_32F), grey;
   for (const cv::Mat& still : stills) {
     cv::cvtColor(still, grey, cv::COLOR_BGR2GRAY);
     cv::accumulate(grey, mean);
   }
   mean /= static_cast<double>(stills.size());
-  survey.rings = find_concentric_circles(mean, 0.12 * std::min(mean.rows, mean.cols));
-  survey.centre = enclosing_circle(survey.rings);
-  if (!(survey.centre.radius > 0))
+  outline.rings = find_concentric_circles(mean, 0.12 * std::min(mean.rows, mean.cols));
+  outline.centre = enclosing_circle(outline.rings);
+  if (!(outline.centre.radius > 0))
     throw InputError(
         folder,
         "shows no mill; a view along the mill's axis was expected, with most of its round shell in the picture");
   report(progress, 0.1);
 
   BallEyes eyes;
-  const BallLook look = learn_look(eyes.net, stills, survey.centre, known_radii(known));
+  const BallLook look = learn_look(eyes.net, stills, outline.centre, known_radii(known));
   std::vector<std::vector<Detection>> balls;
   std::vector<cv::Mat> shares;
   for (const cv::Mat& still : stills) {
-    const Detections seen = detect_balls(eyes, still, look, survey.centre, kBirthScore);
+    const Detections seen = detect_balls(eyes, still, look, outline.centre, kBirthScore);
     balls.push_back(seen.balls);
     shares.push_back(charge_share(seen, still.size()));
     report(progress, 0.1 + 0.5 * static_cast<double>(balls.size()) / static_cast<double>(stills.size()));
@@ -131,18 +131,18 @@ ChargeMotion measure_stills(const std::string& folder, const FilmOptions& option
   const bool resolved = std::any_of(balls.begin(), balls.end(), [](const auto& f) { return !f.empty(); });
   MillView view;
   if (resolved) {
-    view = find_view(balls, look, survey, DrumPattern{}, known, motion.caveats);
+    view = find_view(balls, look, outline, known, motion.caveats);
   } else {
-    shares = two_tone_shares(stills, survey.centre);
+    shares = two_tone_shares(stills, outline.centre);
     if (shares.empty())
       throw InputError(folder,
                        "shows neither balls of at least 3 pixels' radius nor a bed of one tone before another; one or "
                        "the other was expected in the mill");
     motion.caveats.push_back("balls too small to be told apart: toe, shoulder and filling are those of the bed's tone");
-    view.mill = survey.centre;
+    view.mill = outline.centre;
     view.metres_per_pixel = 0.5 * known.mill.diameter / view.mill.radius;
   }
-  place_shell(view, survey, charge_reach(shares, survey.centre), known);
+  place_shell(view, outline, charge_reach(shares, outline.centre), known);
   motion.camera.centre_u_px = view.mill.u;
   motion.camera.centre_v_px = view.mill.v;
   motion.camera.radius_px = view.mill.radius;

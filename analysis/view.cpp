@@ -33,10 +33,29 @@ std::vector<double> known_radii(const Config& known) {
   return radii;
 }
 
-MillView find_view(const std::vector<std::vector<Detection>>& balls, const BallLook& look, const FilmSurvey& survey,
-                   const DrumPattern& drum, const Config& known, std::vector<std::string>& caveats) {
+Circle enclosing_circle(const std::vector<RingEdge>& rings) {
+  Circle circle;
+  double weight = 0, strongest = 0;
+  for (const RingEdge& r : rings) strongest = std::max(strongest, std::abs(r.strength) * r.coverage);
+  for (const RingEdge& r : rings) {
+    const double w = std::abs(r.strength) * r.coverage;
+    if (w < 0.1 * strongest || r.coverage < 0.55) continue;
+    circle.radius = std::max(circle.radius, r.circle.radius);
+    const double whole = std::pow(r.coverage, 6);  // an arc pulls its centre aside: whole circles have the say
+    circle.u += w * whole * r.circle.u;
+    circle.v += w * whole * r.circle.v;
+    weight += w * whole;
+  }
+  if (weight == 0) return {};
+  circle.u /= weight;
+  circle.v /= weight;
+  return circle;
+}
+
+MillView find_view(const std::vector<std::vector<Detection>>& balls, const BallLook& look, const DrumOutline& outline,
+                   const Config& known, std::vector<std::string>& caveats) {
   MillView view;
-  view.mill = survey.centre;
+  view.mill = outline.centre;
   const double mill_radius = 0.5 * known.mill.diameter;  // [m], may be NaN
   const auto sizes = known_radii(known);
   const bool sizes_known = sizes.size() == look.radii.size();
@@ -66,7 +85,7 @@ MillView find_view(const std::vector<std::vector<Detection>>& balls, const BallL
   double best_radius = 1;
   for (std::size_t c = 0; c < classes; ++c) {
     const double least = guess > 0 ? 0.98 * guess - radii[c] : 0, most = guess > 0 ? 1.02 * guess - radii[c] : 1e9;
-    const ShellTouch touch = find_shell_touch(balls, static_cast<int>(c), radii, survey.centre, least, most);
+    const ShellTouch touch = find_shell_touch(balls, static_cast<int>(c), radii, outline.centre, least, most);
     if (!touch.found || touch.count <= best.count) continue;
     best = touch;
     best_radius = radii[c];
@@ -87,7 +106,7 @@ MillView find_view(const std::vector<std::vector<Detection>>& balls, const BallL
   }
   const double touched = view.mill.radius;
   double nearest = (best.found ? kSnap : 0.03) * touched;
-  for (const RingEdge& ring : survey.rings) {
+  for (const RingEdge& ring : outline.rings) {
     const double miss = std::abs(ring.circle.radius - touched);
     if (ring.coverage < 0.5 || miss >= nearest) continue;
     nearest = miss;
@@ -109,15 +128,6 @@ MillView find_view(const std::vector<std::vector<Detection>>& balls, const BallL
     view.tip_radius = view.mill.radius * shape.tip_radius / shape.radius;
   } else if (known.mill.lifters.height > 0 && mill_radius > 0) {
     view.tip_radius = view.mill.radius * (1 - known.mill.lifters.height / mill_radius);
-  } else if (drum.lifter_count > 0) {
-    double strongest =
-        0;  // lifters wash out in the mean picture: their tips leave the clearest circle inside the shell
-    for (const RingEdge& ring : survey.rings) {
-      const double share = ring.circle.radius / view.mill.radius, s = std::abs(ring.strength) * ring.coverage;
-      if (share < 0.8 || share > 0.985 || ring.coverage < 0.55 || s <= strongest) continue;
-      strongest = s;
-      view.tip_radius = ring.circle.radius;
-    }
   }
   return view;
 }

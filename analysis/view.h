@@ -2,7 +2,8 @@
 #include <string>
 #include <vector>
 
-#include "analysis/film_survey.h"
+#include "analysis/ball_detector.h"
+#include "analysis/circles.h"
 #include "core/charge_motion.h"
 #include "core/config.h"
 
@@ -24,10 +25,18 @@ cv::Point2d about_axis(const Detection& ball, const MillView& view);
 // Ball radii that the config names [m], ascending; empty where it names none.
 std::vector<double> known_radii(const Config& known);
 
+// The circles of the stills' mean picture, and what they are about: the mill's centre and the largest circle that
+// encloses the drum.
+struct DrumOutline {
+  std::vector<RingEdge> rings;  // strongest first
+  Circle centre;
+};
+Circle enclosing_circle(const std::vector<RingEdge>& rings);
+
 // The shell is where balls stop that lie against it, put onto the nearest circular edge; scale from what is known:
 // the mill's diameter, else the balls' sizes, else none.
-MillView find_view(const std::vector<std::vector<Detection>>& balls, const BallLook& look, const FilmSurvey& survey,
-                   const DrumPattern& drum, const Config& known, std::vector<std::string>& caveats);
+MillView find_view(const std::vector<std::vector<Detection>>& balls, const BallLook& look, const DrumOutline& outline,
+                   const Config& known, std::vector<std::string>& caveats);
 
 // Places and lengths in pixels of enlarged pictures become those of the film itself.
 void shrink_to_film(ChargeMotion& motion, int enlarged);

@@ -145,7 +145,7 @@ TEST_P(FastFilm, FindsAndFollowsTheBalls) {
   EXPECT_GE(recall, 0.98);
   EXPECT_LE(false_share, 0.01);
   EXPECT_LE(rmse_px, 0.5);
-  EXPECT_NEAR(seen.camera.centre_u_px, 399.5, 0.5);
+  EXPECT_NEAR(seen.camera.centre_u_px, 399.5, 0.8);  // by less than half a turn of the drum
   EXPECT_NEAR(seen.camera.centre_v_px, 359.5, 0.5);
   EXPECT_LE(double(switches) / double(found), 1e-3);
   std::printf("             recall %.4f  false %.4f  RMSE %.3f px %.3f mm  switches %zu of %zu\n", recall, false_share,
