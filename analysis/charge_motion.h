@@ -6,6 +6,7 @@
 
 #include "core/charge_motion.h"
 #include "core/frame.h"
+#include "core/image.h"
 #include "core/pixel_tracks.h"
 #include "core/progress.h"
 
@@ -35,6 +36,8 @@ struct FilmOptions {
   const Config* mill = nullptr;            // what is known of the mill (may be partial), or nothing
   double recorded_fps = kNotGiven;         // the camera's rate where known and different from the file's [1/s]
   Rotation rotation = Rotation::kUnknown;  // unknown: found from the film
+  // Where wanted: the film with all that was found drawn over it, picture by picture, and its contact sheet.
+  std::function<void(const Image&)> overlay, sheet;
 };
 
 // A film in any container that OpenCV reads. Throws InputError when it cannot be read or no mill is found in it.

@@ -7,6 +7,7 @@
 #include "analysis/ballistics.h"
 #include "analysis/charge_motion.h"
 #include "analysis/charge_statistics.h"
+#include "analysis/film_findings.h"
 #include "analysis/film_pass.h"
 #include "analysis/film_reader.h"
 #include "analysis/frame_clock.h"
@@ -204,6 +205,26 @@ std::vector<bool> hidden_bins(const std::vector<double>& share, double roll_deg,
   return hidden;
 }
 
+FilmFindings findings_of(const Scene& scene, const std::vector<FilmFrame>& film, const std::vector<SeenFrame>& frames,
+                         const std::vector<std::size_t>& row_of, double roll, bool clockwise, int lifters) {
+  FilmFindings findings;
+  findings.camera = scene.drum.camera;
+  findings.radius = scene.radius;
+  findings.tip_radius = scene.tip_radius;
+  findings.roll = roll;
+  findings.clockwise = clockwise;
+  findings.lifters = lifters;
+  findings.lifter_angle = scene.drum.lifter_angle;
+  findings.hidden = scene.drum.hidden;
+  for (std::size_t f = 0; f < film.size(); ++f) {
+    findings.drum.push_back(film[f].drum.angle);
+    findings.balls.emplace_back();
+    for (const Sighting& s : frames[row_of[f]].balls)
+      findings.balls.back().push_back({s.u, s.v, s.radius * scene.pixels_per_unit, s.track});
+  }
+  return findings;
+}
+
 }  // namespace
 
 ChargeMotion measure_film(const std::string& path, const FilmOptions& options, const Progress& progress) {
@@ -389,6 +410,14 @@ ChargeMotion measure_film(const std::string& path, const FilmOptions& options, c
     statistics.add(static_cast<int>(f), clock.source[f] / rate, clockwise ? 180 - as_seen : as_seen, balls, hidden);
   }
   statistics.finish(motion);
+  if (options.overlay || options.sheet) {
+    const FilmFindings findings =
+        findings_of(scene, film, frames, row_of, radians(roll_deg), clockwise, motion.lifter_count);
+    if (options.sheet) options.sheet(contact_sheet(path, findings, motion));
+    if (options.overlay)
+      draw_film(path, findings, motion, options.overlay,
+                [&](double done) { report(progress, kPassShare + (1 - kPassShare) * done); });
+  }
   shrink_to_film(motion, reader.enlarged());
   if (std::isnan(scene.metres)) forget_lengths(motion);
   report(progress, 1.0);

@@ -9,6 +9,8 @@
 #include "core/error.h"
 #include "core/parallel_for.h"
 #include "io/config_file.h"
+#include "io/film_file.h"
+#include "io/image_file.h"
 #include "io/motion_file.h"
 #include "io/output.h"
 
@@ -20,7 +22,7 @@ const std::map<std::string, Rotation> kRotations = {{"auto", Rotation::kUnknown}
                                                     {"counter_clockwise", Rotation::kCounterClockwise}};
 
 struct Options : CommonOptions {
-  fs::path input, output, mill, csv;
+  fs::path input, output, mill, csv, overlay, sheet;
   std::string rotation = "auto";
   std::string centre;
   analysis::TracksOptions film;
@@ -45,7 +47,29 @@ void analyse(Options o) {
     for (const char* table : io::kTables) io::check_output_file(o.csv / table, o.force);
   }
 
+  std::unique_ptr<io::FilmWriter> overlay;
+  if (!o.overlay.empty()) {
+    io::check_not_input(o.overlay, o.input);
+    io::check_output_file(o.overlay, o.force);
+    o.film.overlay = [&](const Image& picture) {
+      if (overlay == nullptr) {
+        io::FilmFormat format;
+        format.width = picture.width;
+        format.height = picture.height;
+        format.fps_numerator = 30;
+        overlay = std::make_unique<io::FilmWriter>(o.overlay.string(), format);
+      }
+      overlay->write(picture);
+    };
+  }
+  if (o.sheet.empty() && !o.csv.empty()) o.sheet = o.csv / "sheet.png";
+  if (!o.sheet.empty()) {
+    io::check_not_input(o.sheet, o.input);
+    io::check_output_file(o.sheet, o.force);
+    o.film.sheet = [&](const Image& picture) { io::write_png(o.sheet.string(), picture); };
+  }
   const ChargeMotion motion = measure(o.input, o.film, o);
+  if (overlay != nullptr) overlay->finish();
   for (const std::string& caveat : motion.caveats) say(o, "note: " + caveat);
   io::write_motion(o.output, motion);
   if (!o.csv.empty()) io::write_csv(o.csv, motion);
@@ -64,6 +88,8 @@ void add_analyse(CLI::App& app) {
   verb->add_option("-o,--output", o->output, "MOTION.h5 to write")->required();
   verb->add_option("--mill", o->mill, "MILL.toml with what is known of the mill; may be partial");
   verb->add_option("--csv", o->csv, "Folder for summary.json, profile.csv, tracks.csv, occupancy.csv");
+  verb->add_option("--overlay", o->overlay, "FILM.mp4 to write: the film with all that was found drawn over it");
+  verb->add_option("--sheet", o->sheet, "Contact sheet to write, PNG; of films with --csv, sheet.png there");
   verb->add_option("--recorded-fps", o->film.recorded_fps, "The camera's rate where the file's is another, 1/s");
   verb->add_option("--rotation", o->rotation, "How the mill turns in the film: auto, clockwise, counter_clockwise")
       ->capture_default_str();
