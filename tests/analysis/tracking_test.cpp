@@ -142,5 +142,38 @@ TEST(Tracking, VelocityOfAParabolaIsExact) {
   }
 }
 
+// Twenty balls are carried up and fall back, over and over; a bolt goes round with the drum, a lamp stands still.
+TEST(Tracking, TakesNeitherBoltNorLampForABall) {
+  constexpr double kTurn = 0.05;
+  std::vector<SeenFrame> frames(140);
+  for (std::size_t f = 0; f < frames.size(); ++f) {
+    frames[f].time = static_cast<double>(f);
+    const auto see = [&](double x, double y) {
+      Sighting s;
+      s.x = x;
+      s.y = y;
+      s.radius = 0.01;
+      s.deviation = 1e-4;
+      s.score = 0.9;
+      frames[f].balls.push_back(s);
+    };
+    const double t = static_cast<double>(f);
+    for (int k = 0; k < 20; ++k) {  // to and fro in the lower half
+      const double a = 4.7 + 1.2 * std::sin(kTurn * t + 0.3 * k), rho = 0.1 + 0.008 * k;
+      see(rho * std::cos(a), rho * std::sin(a));
+    }
+    see(0.28 * std::cos(kTurn * t), 0.28 * std::sin(kTurn * t));
+    see(-0.05, 0.2);
+  }
+  MotionModel model;
+  model.turn = kTurn;
+  link_sightings(frames, model);
+  for (const SeenFrame& f : frames) {
+    for (std::size_t k = 0; k < 20; ++k) EXPECT_GE(f.balls[k].track, 0);
+    EXPECT_EQ(f.balls[20].track, -1);
+    EXPECT_EQ(f.balls[21].track, -1);
+  }
+}
+
 }  // namespace
 }  // namespace tumble::analysis
