@@ -1,5 +1,7 @@
 #include "analysis/drum_calibration.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -382,7 +384,11 @@ DrumView calibrate_drum(const NextPicture& next, double frames_per_second, const
     view.caveats.push_back(why);
     return view;
   };
-  if (sample.greys.size() < kFewestFrames) return refuse("the film is too short to see a drum turn");
+  if (sample.greys.size() < kFewestFrames)
+    return refuse(
+        fmt::format("{} pictures are too few to see a drum turn, at least {} were expected; single pictures are "
+                    "taken from a folder",
+                    sample.greys.size(), kFewestFrames));
   TurningDisc disc = find_turning_disc(sample.mean, sample.coarse_deviation);
   if (!disc.found) return refuse("no turning drum was found in the film");
   PosePrior prior = usual_camera(sample.mean.size(), disc.radius);
@@ -474,8 +480,13 @@ DrumView calibrate_drum(const NextPicture& next, double frames_per_second, const
   const double tip = known.mill.lifters.height > 0 && mill_radius > 0
                          ? shell.radius * (1 - known.mill.lifters.height / mill_radius)
                          : 0.93 * shell.radius;
-  view.lifter_count =
-      known.mill.lifters.count > 0 ? known.mill.lifters.count : count_lifters(*reader, tip, 0.99 * shell.radius);
+  const int seen_lifters = count_lifters(*reader, tip, 0.99 * shell.radius);
+  view.lifter_count = known.mill.lifters.count > 0 ? known.mill.lifters.count : seen_lifters;
+  // Every second lifter alike is seen as half as many.
+  if (seen_lifters > 0 && seen_lifters % view.lifter_count != 0 && view.lifter_count % seen_lifters != 0)
+    view.caveats.push_back(
+        fmt::format("the drawing has {} lifters, but {} go round in the film: check mill.lifters.count",
+                    view.lifter_count, seen_lifters));
   view.lifter_angle = lifter_angle(*reader, reader->strips(), camera.fit.angles, view.lifter_count, tip, shell.radius);
   const cv::Mat hidden = hidden_part(sample.mean, sample.deviation, pose, tip, shell.radius);
   const double deep = ball > 0 && mill_radius > 0 ? 2 * ball / mill_radius * shell.radius : 0.1 * shell.radius;

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <opencv2/core/utility.hpp>
 
@@ -170,14 +171,25 @@ Estimate turn_per_frame(const std::vector<double>& time, const std::vector<doubl
 }
 
 FreeFall fall_of(const std::vector<SeenFrame>& frames, const Scene& scene) {
-  std::vector<TimedPlace> places;
-  for (const SeenFrame& f : frames)
-    for (const Sighting& s : f.balls)
-      if (s.track >= 0)
-        places.push_back({s.track, f.time, s.x, s.y, s.deviation, (s.v + 0.5) / scene.drum.camera.height});
   FallOptions options;
   options.readout_share = std::isnan(scene.drum.readout.value) ? 0.0 : scene.drum.readout.value;
-  return find_free_fall(places, options);
+  FreeFall upright;
+  for (const int quarters : {0, 2, 1, 3}) {  // films may be upside down, or lie on their side
+    const double c = std::array{1, 0, -1, 0}[static_cast<std::size_t>(quarters)];
+    const double si = std::array{0, 1, 0, -1}[static_cast<std::size_t>(quarters)];
+    std::vector<TimedPlace> places;
+    for (const SeenFrame& f : frames)
+      for (const Sighting& s : f.balls)
+        if (s.track >= 0)
+          places.push_back({s.track, f.time, c * s.x + si * s.y, c * s.y - si * s.x, s.deviation,
+                            (s.v + 0.5) / scene.drum.camera.height});
+    FreeFall fall = find_free_fall(places, options);
+    if (quarters == 0) upright = fall;
+    if (!(fall.roll_deg.se < kWorstRoll)) continue;
+    fall.roll_deg.value = wrap_180(fall.roll_deg.value + 90 * quarters);
+    return fall;
+  }
+  return upright;
 }
 
 // The mill frame upright, and counter-clockwise.
@@ -328,6 +340,9 @@ ChargeMotion measure_film(const std::string& path, const FilmOptions& options, c
     roll_deg = 0;
     motion.caveats.push_back("too few balls are seen to fall freely to find the camera's roll: taken as upright");
   }
+  if (std::abs(roll_deg) > 45)
+    motion.caveats.push_back(fmt::format("balls fall {} in this film: it is taken as turned by {:.0f} degrees",
+                                         std::abs(roll_deg) > 135 ? "upwards" : "sideways", roll_deg));
   if (!std::isnan(fps) && !std::isnan(scene.metres)) {  // now that gravity is known, link once more
     const double g = kGravity / scene.metres / (fps * fps), roll = radians(roll_deg);
     model.gravity_x = g * std::sin(roll);
