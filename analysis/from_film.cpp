@@ -24,9 +24,12 @@ namespace tumble::analysis {
 namespace {
 
 constexpr double kLeastScore = 0.2;      // of a ball: looked at at all
+constexpr double kToldScore = 0.5;       // more likely a ball than not; fainter ones only keep paths together
 constexpr double kCalibrateShare = 0.2;  // of the work, for the progress
 constexpr double kPassShare = 0.95;
 constexpr double kWorstRoll = 1.5;  // standard error beyond which a camera's roll is not believed [degrees]
+
+bool is_told(const Sighting& s) { return s.track >= 0 && s.score > kToldScore; }
 
 // Where the mill is in the pictures, and in which unit its lengths are.
 struct Scene {
@@ -232,7 +235,7 @@ FilmFindings findings_of(const Scene& scene, const std::vector<FilmFrame>& film,
     findings.drum.push_back(film[f].drum.angle);
     findings.balls.emplace_back();
     for (const Sighting& s : frames[row_of[f]].balls)
-      findings.balls.back().push_back({s.u, s.v, s.radius * scene.pixels_per_unit, s.track});
+      findings.balls.back().push_back({s.u, s.v, s.radius * scene.pixels_per_unit, is_told(s) ? s.track : -1});
   }
   return findings;
 }
@@ -385,7 +388,7 @@ ChargeMotion measure_film(const std::string& path, const FilmOptions& options, c
   for (const SeenFrame& f : frames) {
     double area = 0;
     for (const Sighting& s : f.balls) {
-      if (s.track < 0) continue;
+      if (!is_told(s)) continue;
       diameters += 2 * s.radius * unit;
       count += 1;
       area += s.radius * s.radius;
@@ -405,7 +408,7 @@ ChargeMotion measure_film(const std::string& path, const FilmOptions& options, c
   for (std::size_t f = 0; f < film.size(); ++f) {
     std::vector<TrackPoint> balls;
     for (const Sighting& s : frames[row_of[f]].balls) {
-      if (s.track < 0) continue;
+      if (!is_told(s)) continue;
       TrackPoint p;
       p.frame = static_cast<int>(f);
       p.id = s.track;
