@@ -60,7 +60,12 @@ bool within(const SeenBall& b, const Circle& bound) {
   return std::hypot(b.u - bound.u, b.v - bound.v) + b.radius <= bound.radius;
 }
 
-double area(const SeenBall& b) { return b.score * b.visible * b.radius * b.radius; }
+// What speaks for a size: the area seen of its balls, that of doubtful ones hardly. One large "ball" made of many small
+// ones is doubtful.
+double area(const SeenBall& b) {
+  const double sure = std::max(0.0, 2 * b.score - 1);
+  return sure * sure * b.visible * b.radius * b.radius;
+}
 
 // How well classes of these radii explain what was seen, by area.
 double explained(const std::vector<SeenBall>& seen, const std::vector<double>& radii) {
