@@ -17,8 +17,6 @@ constexpr int kStride = 4, kFine = 16, kWidth = 32, kMaps = 7, kSubcells = 4;
 constexpr int kSpread = 64, kJoined = kFine + kSpread / kSubcells;
 enum Map { kHeat, kAlongU, kAlongV, kLogRadius, kVisible, kLogDeviation, kCover };
 
-double sigmoid(double x) { return 1 / (1 + std::exp(-x)); }
-
 // The network for pictures of one size.
 struct Layers {
   ConvNet net{ball_net_weights()};

@@ -80,7 +80,7 @@ void BallRefiner::refine(const cv::Mat& bgr, std::span<SeenBall> balls) {
       b.v += kNetRadius * std::clamp(static_cast<double>(a[1]), -0.5, 0.5);
       b.deviation = kNetRadius * std::exp(std::clamp(static_cast<double>(a[2]), -6.0, 1.0));
       b.radius = kNetRadius * std::exp(std::clamp(static_cast<double>(a[3]), -0.5, 0.5));
-      b.visible = 1 / (1 + std::exp(-static_cast<double>(a[4])));
+      b.visible = sigmoid(a[4]);
     }
   }
 }

@@ -1,10 +1,14 @@
 #pragma once
+#include <cmath>
 #include <functional>
 #include <oneapi/dnnl/dnnl.hpp>
 #include <span>
 #include <vector>
 
 namespace tumble::analysis {
+
+// What a network's answer to a yes-or-no question means as a probability.
+inline double sigmoid(double x) { return 1 / (1 + std::exp(-x)); }
 
 // A convolutional network with fixed weights, for inputs of one shape, built layer by layer and then run. A thin cover
 // of oneDNN: for the room's own nets alone. It stays in the thread that calls it.

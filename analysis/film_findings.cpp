@@ -140,10 +140,8 @@ std::string number(const char* name, const Estimate& e, const char* unit, int di
   return fmt::format("{} {:.{}f} +- {:.{}f}{}", name, e.value, digits, e.se, digits, unit);
 }
 
-}  // namespace
-
-namespace {
-
+// Circle, lifters, balls with the way they came, toe and shoulder, what is hidden and what was rejected, over a picture
+// of the film; words stay within `part` of it.
 void draw_within(cv::Mat& bgr, const cv::Rect& part, const FilmFindings& findings, const ChargeMotion& motion,
                  int frame) {
   const auto f = static_cast<std::size_t>(frame);
@@ -186,16 +184,12 @@ cv::Rect mill_part(const FilmFindings& findings, cv::Size picture) {
 
 }  // namespace
 
-void draw_findings(cv::Mat& bgr, const FilmFindings& findings, const ChargeMotion& motion, int frame) {
-  draw_within(bgr, {{0, 0}, bgr.size()}, findings, motion, frame);
-}
-
 void draw_film(const std::string& path, const FilmFindings& findings, const ChargeMotion& motion,
                const std::function<void(const Image&)>& sink, const Progress& progress) {
   FilmReader film(path);
   cv::Mat picture;
   for (int f = 0; f < motion.frames && film.next(picture); ++f) {
-    draw_findings(picture, findings, motion, f);
+    draw_within(picture, {{0, 0}, picture.size()}, findings, motion, f);
     sink(image_of(picture(cv::Rect(0, 0, picture.cols / 2 * 2, picture.rows / 2 * 2))));
     report(progress, static_cast<double>(f + 1) / motion.frames);
   }
@@ -218,7 +212,7 @@ Image contact_sheet(const std::string& path, const FilmFindings& findings, const
   if (tiles.empty()) return {};
   const int height = tiles.front().rows, rows = (static_cast<int>(tiles.size()) + 2) / 3;
   const std::array<std::string, 3> numbers = {
-      motion.origin.empty() ? path : motion.origin,
+      path,
       number("speed", motion.speed_rpm, " rev/min", 2) + ", " + name_of(motion.rotation) +
           fmt::format(", {:.4g} frames/s, {} repeated, {} gaps, ", motion.frames_per_second,
                       motion.duplicated_frames.size(), motion.dropped_frames.size()) +

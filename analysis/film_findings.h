@@ -29,11 +29,8 @@ struct FilmFindings {
   std::vector<std::vector<FoundBall>> balls;  // by frame of the file
 };
 
-// Circle, lifters, balls with the way they came, toe and shoulder, what is hidden and what was rejected, over a picture
-// of the film.
-void draw_findings(cv::Mat& bgr, const FilmFindings& findings, const ChargeMotion& motion, int frame);
-
-// The whole film with its findings, picture by picture.
+// The whole film with its findings drawn over it, picture by picture: circle, lifters, balls with the way they came,
+// toe and shoulder, what is hidden and what was rejected.
 void draw_film(const std::string& film, const FilmFindings& findings, const ChargeMotion& motion,
                const std::function<void(const Image&)>& sink, const Progress& progress);
 

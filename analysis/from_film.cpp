@@ -24,12 +24,9 @@ namespace tumble::analysis {
 namespace {
 
 constexpr double kLeastScore = 0.2;      // of a ball: looked at at all
-constexpr double kToldScore = 0.5;       // more likely a ball than not; fainter ones only keep paths together
 constexpr double kCalibrateShare = 0.2;  // of the work, for the progress
 constexpr double kPassShare = 0.95;
 constexpr double kWorstRoll = 1.5;  // standard error beyond which a camera's roll is not believed [degrees]
-
-bool is_told(const Sighting& s) { return s.track >= 0 && s.score > kToldScore; }
 
 // Where the mill is in the pictures, and in which unit its lengths are.
 struct Scene {
@@ -114,10 +111,9 @@ std::vector<SeenFrame> places_of(const std::vector<FilmFrame>& film, const Frame
 
 // Drawn films show no perspective, whatever is supposed of the camera: seen as through one, the circle in which balls
 // lie against the shell is not about the axis.
-bool drawn_from_afar(const std::vector<SeenFrame>& near, const std::vector<SeenFrame>& afar, const Scene& scene) {
+bool drawn_from_afar(const BallPlane& near, const BallPlane& afar) {
   constexpr double kClear = 6;  // difference of log likelihoods
-  const auto uneven = [&](const auto& frames) { return measure_ball_plane(frames, scene.radius, {}).uneven; };
-  return uneven(afar) + kClear < uneven(near);
+  return afar.uneven + kClear < near.uneven;
 }
 
 void multiply_lengths(std::vector<SeenFrame>& frames, Scene& scene, double factor) {
@@ -132,10 +128,9 @@ void multiply_lengths(std::vector<SeenFrame>& frames, Scene& scene, double facto
 
 // Lengths by the balls: where mill and balls are both known, they better the camera's scale; where one is missing, the
 // balls' touching gives their size in the unit of the other.
-void settle_lengths(std::vector<SeenFrame>& frames, Scene& scene, const std::vector<double>& sizes,
-                    std::vector<std::string>& caveats) {
+void settle_lengths(std::vector<SeenFrame>& frames, Scene& scene, const BallPlane& plane,
+                    const std::vector<double>& sizes, std::vector<std::string>& caveats) {
   const bool mill_known = !std::isnan(scene.metres), sizes_known = sizes.size() == scene.radii.size();
-  const BallPlane plane = measure_ball_plane(frames, scene.radius, {1.0, scene.drum.scale.se});
   if (mill_known && sizes_known) {
     multiply_lengths(frames, scene, plane.factor.value);
     if (!std::isnan(plane.touching.value) && !std::isnan(plane.reach.value) &&
@@ -193,20 +188,6 @@ FreeFall fall_of(const std::vector<SeenFrame>& frames, const Scene& scene) {
     return fall;
   }
   return upright;
-}
-
-// The mill frame upright, and counter-clockwise.
-void turn_upright(std::vector<SeenFrame>& frames, double roll, bool clockwise) {
-  const double c = std::cos(roll), s = std::sin(roll);
-  for (SeenFrame& f : frames)
-    for (Sighting& b : f.balls) {
-      const double x = c * b.x + s * b.y, y = c * b.y - s * b.x;
-      const double vx = c * b.vx + s * b.vy, vy = c * b.vy - s * b.vx;
-      b.x = clockwise ? -x : x;
-      b.y = y;
-      b.vx = clockwise ? -vx : vx;
-      b.vy = vy;
-    }
 }
 
 // Bins of the ring, upright and counter-clockwise, of which half and more is covered by what stands still.
@@ -300,9 +281,15 @@ ChargeMotion measure_film(const std::string& path, const FilmOptions& options, c
     scene.radii.push_back(sizes.size() == look.radii.size() && !std::isnan(scene.metres)
                               ? sizes[c] / scene.metres
                               : look.radii[c] / scene.pixels_per_unit);
+  const Estimate scale{1.0, scene.drum.scale.se};
   std::vector<SeenFrame> places = places_of(film, clock, scene, false);
-  if (drawn_from_afar(places, places_of(film, clock, scene, true), scene)) places = places_of(film, clock, scene, true);
-  settle_lengths(places, scene, sizes, motion.caveats);
+  BallPlane plane = measure_ball_plane(places, scene.radius, scale);
+  std::vector<SeenFrame> afar = places_of(film, clock, scene, true);
+  if (const BallPlane far_plane = measure_ball_plane(afar, scene.radius, scale); drawn_from_afar(plane, far_plane)) {
+    places = std::move(afar);
+    plane = far_plane;
+  }
+  settle_lengths(places, scene, plane, sizes, motion.caveats);
   drop_beyond(places, scene.radius);
   drop_impossible(places,
                   std::isnan(known.mill.length) && in_one_layer(places) ? 0.0 : known.mill.length / scene.metres);
@@ -406,23 +393,7 @@ ChargeMotion measure_film(const std::string& path, const FilmOptions& options, c
   const std::vector<bool> hidden = hidden_bins(scene.drum.hidden_share, roll_deg, clockwise);
   ChargeStatistics statistics(geometry);
   for (std::size_t f = 0; f < film.size(); ++f) {
-    std::vector<TrackPoint> balls;
-    for (const Sighting& s : frames[row_of[f]].balls) {
-      if (!is_told(s)) continue;
-      TrackPoint p;
-      p.frame = static_cast<int>(f);
-      p.id = s.track;
-      p.time = s.time / rate;
-      p.x = s.x * unit;
-      p.y = s.y * unit;
-      p.vx = s.vx * unit * rate;
-      p.vy = s.vy * unit * rate;
-      p.radius = s.radius * unit;
-      p.u_px = s.u;
-      p.v_px = s.v;
-      balls.push_back(p);
-    }
-    std::sort(balls.begin(), balls.end(), [](const TrackPoint& a, const TrackPoint& b) { return a.id < b.id; });
+    const std::vector<TrackPoint> balls = points_of(frames[row_of[f]], static_cast<int>(f), unit, rate);
     const double lifter = std::isnan(scene.drum.lifter_angle) ? 0.0 : scene.drum.lifter_angle;  // stands at the angle
     const double as_seen = degrees(lifter + film[f].drum.angle) - roll_deg;
     statistics.add(static_cast<int>(f), clock.source[f] / rate, clockwise ? 180 - as_seen : as_seen, balls, hidden);

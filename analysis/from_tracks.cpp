@@ -157,18 +157,19 @@ ChargeMotion measure_tracks(const PixelTracks& tracks, const TracksOptions& opti
   motion.caveats.push_back("filling, toe, shoulder and occupancy are those of the balls that the tracks hold");
 
   std::vector<SeenFrame> frames(static_cast<std::size_t>(motion.frames));
-  std::vector<std::vector<const PixelSighting*>> from(frames.size());
   for (const PixelSighting& s : sightings) {
-    const double x = s.u - shell.centre.u, y = shell.centre.v - s.v;
-    Sighting ball;  // upright, and mirrored where the mill turns clockwise
-    ball.x = sense * (x * std::cos(roll) + y * std::sin(roll));
-    ball.y = y * std::cos(roll) - x * std::sin(roll);
+    Sighting ball;
+    ball.x = s.u - shell.centre.u;
+    ball.y = shell.centre.v - s.v;
     ball.radius = s.radius;
+    ball.score = 1;
+    ball.u = s.u;
+    ball.v = s.v;
     ball.track = s.track;
     ball.time = s.frame;
     frames[static_cast<std::size_t>(s.frame)].balls.push_back(ball);
-    from[static_cast<std::size_t>(s.frame)].push_back(&s);
   }
+  turn_upright(frames, roll, clockwise);
   smooth_velocities(frames, std::isnan(fps) ? 4.0 : std::clamp(0.025 * fps, 2.0, 20.0));
 
   MillGeometry geometry;
@@ -182,24 +183,11 @@ ChargeMotion measure_tracks(const PixelTracks& tracks, const TracksOptions& opti
   ChargeStatistics statistics(geometry);
   std::vector<double> fillings;
   for (std::size_t f = 0; f < frames.size(); ++f) {
-    std::vector<TrackPoint> balls;
     double area = 0;
-    for (std::size_t k = 0; k < frames[f].balls.size(); ++k) {
-      const Sighting& s = frames[f].balls[k];
-      TrackPoint p;
-      p.frame = static_cast<int>(f);
-      p.id = s.track;
-      p.time = static_cast<double>(f) / rate;
-      p.x = s.x * unit, p.y = s.y * unit;
-      p.vx = s.vx * unit * rate, p.vy = s.vy * unit * rate;
-      p.radius = s.radius * unit;
-      p.u_px = from[f][k]->u, p.v_px = from[f][k]->v;
-      area += s.radius * s.radius;
-      balls.push_back(p);
-    }
-    std::sort(balls.begin(), balls.end(), [](const TrackPoint& a, const TrackPoint& b) { return a.id < b.id; });
+    for (const Sighting& s : frames[f].balls) area += s.radius * s.radius;
     fillings.push_back(area / (kSettledAreaShare * motion.camera.radius_px * motion.camera.radius_px));
-    statistics.add(static_cast<int>(f), static_cast<double>(f) / rate, kNotGiven, balls);
+    statistics.add(static_cast<int>(f), static_cast<double>(f) / rate, kNotGiven,
+                   points_of(frames[f], static_cast<int>(f), unit, rate));
   }
   motion.filling = mean_of_series(fillings);
   statistics.finish(motion);

@@ -142,4 +142,43 @@ void smooth_velocities(std::vector<SeenFrame>& frames, double window) {
   }
 }
 
+void turn_upright(std::vector<SeenFrame>& frames, double roll, bool clockwise) {
+  const double c = std::cos(roll), s = std::sin(roll);
+  for (SeenFrame& f : frames)
+    for (Sighting& b : f.balls) {
+      const double x = c * b.x + s * b.y, y = c * b.y - s * b.x;
+      const double vx = c * b.vx + s * b.vy, vy = c * b.vy - s * b.vx;
+      b.x = clockwise ? -x : x;
+      b.y = y;
+      b.vx = clockwise ? -vx : vx;
+      b.vy = vy;
+    }
+}
+
+bool is_told(const Sighting& s) {
+  constexpr double kToldScore = 0.5;
+  return s.track >= 0 && s.score > kToldScore;
+}
+
+std::vector<TrackPoint> points_of(const SeenFrame& seen, int frame, double unit, double rate) {
+  std::vector<TrackPoint> points;
+  for (const Sighting& s : seen.balls) {
+    if (!is_told(s)) continue;
+    TrackPoint p;
+    p.frame = frame;
+    p.id = s.track;
+    p.time = s.time / rate;
+    p.x = s.x * unit;
+    p.y = s.y * unit;
+    p.vx = s.vx * unit * rate;
+    p.vy = s.vy * unit * rate;
+    p.radius = s.radius * unit;
+    p.u_px = s.u;
+    p.v_px = s.v;
+    points.push_back(p);
+  }
+  std::sort(points.begin(), points.end(), [](const TrackPoint& a, const TrackPoint& b) { return a.id < b.id; });
+  return points;
+}
+
 }  // namespace tumble::analysis

@@ -2,6 +2,7 @@
 #include <array>
 #include <vector>
 
+#include "core/charge_motion.h"
 #include "core/config.h"
 
 namespace tumble::analysis {
@@ -42,5 +43,15 @@ int link_sightings(std::vector<SeenFrame>& frames, const MotionModel& model);
 
 // Velocities from parabolas through the sightings of the same path within `window` frames.
 void smooth_velocities(std::vector<SeenFrame>& frames, double window);
+
+// Turns places and velocities so that the mill stands upright, and mirrors them where it turns clockwise.
+void turn_upright(std::vector<SeenFrame>& frames, double roll, bool clockwise);
+
+// Whether a sighting is told of: it has its path and is more likely a ball than not. Fainter ones only keep paths
+// together.
+bool is_told(const Sighting& s);
+
+// What is told of a frame, by track. `unit`: metres per length; `rate`: frames per second.
+std::vector<TrackPoint> points_of(const SeenFrame& seen, int frame, double unit, double rate);
 
 }  // namespace tumble::analysis

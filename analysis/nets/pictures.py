@@ -2,6 +2,7 @@
 
 Balls are rows of u, v, radius [px], visible share, size class. New pictures in the folders are taken up while training.
 """
+import argparse
 import glob
 import json
 import multiprocessing
@@ -124,3 +125,27 @@ def train(net, losses, queue, minutes, rate, save, log_every=200):
             seen = []
             save()
     save()
+
+
+def main(about, new_net, make_batch, prepare, losses, minutes, ahead=6):
+    """What both trainers do when they are called; `about` is their help, `minutes` how long unless told otherwise."""
+    import torch
+    parser = argparse.ArgumentParser(description=about, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument('pictures', nargs='+')
+    parser.add_argument('--minutes', type=float, default=minutes)
+    parser.add_argument('--rate', type=float, default=2e-3)
+    parser.add_argument('--seed', type=int, default=1)
+    parser.add_argument('--state', required=True, help='what training goes on from, where it exists, and is kept in')
+    parser.add_argument('--weights', required=True)
+    a = parser.parse_args()
+    torch.manual_seed(a.seed)
+    torch.set_num_threads(1)
+    net = new_net()
+    if os.path.exists(a.state):
+        net.load_state_dict(torch.load(a.state))
+
+    def save():
+        torch.save(net.state_dict(), a.state)
+        write_weights(a.weights, net.convolutions())
+
+    train(net, losses, feed(make_batch, a.pictures, prepare, a.seed, ahead), a.minutes, a.rate, save)

@@ -4,9 +4,6 @@
   make_films pictures --count 3000 --seed 1 --out DIR
   train_ball_net.py DIR... --minutes 180 --state ball_net.pt --weights analysis/nets/ball_net.weights
 """
-import argparse
-import os
-
 import cv2
 import numpy as np
 import torch
@@ -143,28 +140,5 @@ def losses(net, x, heat, weight, near, told, cover):
     return found + 0.4 * place + 3 * radius + 0.5 * visible + 2 * charge, numbers
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument('pictures', nargs='+')
-    parser.add_argument('--minutes', type=float, default=180)
-    parser.add_argument('--rate', type=float, default=2e-3)
-    parser.add_argument('--seed', type=int, default=1)
-    parser.add_argument('--state', required=True, help='what training goes on from, where it exists, and is kept in')
-    parser.add_argument('--weights', required=True)
-    a = parser.parse_args()
-    torch.manual_seed(a.seed)
-    torch.set_num_threads(1)
-    net = BallNet()
-    if os.path.exists(a.state):
-        net.load_state_dict(torch.load(a.state))
-
-    def save():
-        torch.save(net.state_dict(), a.state)
-        pics.write_weights(a.weights, net.convolutions())
-
-    net = net.to(memory_format=torch.channels_last)
-    pics.train(net, losses, pics.feed(make_batch, a.pictures, prepare, a.seed), a.minutes, a.rate, save)
-
-
 if __name__ == '__main__':
-    main()
+    pics.main(__doc__, lambda: BallNet().to(memory_format=torch.channels_last), make_batch, prepare, losses, minutes=180)

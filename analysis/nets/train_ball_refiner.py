@@ -3,9 +3,6 @@
 
   train_ball_refiner.py DIR... --minutes 120 --state ball_refiner.pt --weights analysis/nets/ball_refiner.weights
 """
-import argparse
-import os
-
 import cv2
 import numpy as np
 import torch
@@ -129,27 +126,5 @@ def losses(net, x, told):
     return place + 3 * radius + 0.5 * visible, numbers
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument('pictures', nargs='+')
-    parser.add_argument('--minutes', type=float, default=120)
-    parser.add_argument('--rate', type=float, default=2e-3)
-    parser.add_argument('--seed', type=int, default=1)
-    parser.add_argument('--state', required=True, help='what training goes on from, where it exists, and is kept in')
-    parser.add_argument('--weights', required=True)
-    a = parser.parse_args()
-    torch.manual_seed(a.seed)
-    torch.set_num_threads(1)
-    net = BallRefiner()
-    if os.path.exists(a.state):
-        net.load_state_dict(torch.load(a.state))
-
-    def save():
-        torch.save(net.state_dict(), a.state)
-        pics.write_weights(a.weights, net.convolutions())
-
-    pics.train(net, losses, pics.feed(make_batch, a.pictures, prepare, a.seed, ahead=12), a.minutes, a.rate, save)
-
-
 if __name__ == '__main__':
-    main()
+    pics.main(__doc__, BallRefiner, make_batch, prepare, losses, minutes=120, ahead=12)
