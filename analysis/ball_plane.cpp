@@ -178,12 +178,11 @@ BallPlane measure_ball_plane(const std::vector<SeenFrame>& frames, double mill_r
   return plane;
 }
 
-void drop_beyond(std::vector<SeenFrame>& frames, double mill_radius) {
+void drop_beyond(SeenFrame& frame, double mill_radius) {
   constexpr double kSlack = 0.2;  // of the radius
-  for (SeenFrame& f : frames)
-    std::erase_if(f.balls, [&](const Sighting& b) {
-      return std::hypot(b.x, b.y) + b.radius > mill_radius + kSlack * b.radius + 2 * b.deviation;
-    });
+  std::erase_if(frame.balls, [&](const Sighting& b) {
+    return std::hypot(b.x, b.y) + b.radius > mill_radius + kSlack * b.radius + 2 * b.deviation;
+  });
 }
 
 bool in_one_layer(const std::vector<SeenFrame>& frames) {
@@ -201,23 +200,21 @@ bool in_one_layer(const std::vector<SeenFrame>& frames) {
   return touching > kFewest && covering < kMostCovering * touching;
 }
 
-void drop_impossible(std::vector<SeenFrame>& frames, double length) {
+void drop_impossible(SeenFrame& frame, double length) {
   constexpr double kSlack = 0.8;  // of the distance: centres are not exact, and balls are seen in perspective
   if (std::isnan(length)) return;
-  for (SeenFrame& f : frames) {
-    std::stable_sort(f.balls.begin(), f.balls.end(),
-                     [](const Sighting& a, const Sighting& b) { return a.score > b.score; });
-    std::vector<Sighting> kept;
-    for (const Sighting& b : f.balls) {
-      const bool possible = std::none_of(kept.begin(), kept.end(), [&](const Sighting& k) {
-        const double sum = b.radius + k.radius, behind = std::max(0.0, length - sum);
-        if (behind >= sum) return false;
-        return std::hypot(b.x - k.x, b.y - k.y) < kSlack * std::sqrt(sum * sum - behind * behind);
-      });
-      if (possible) kept.push_back(b);
-    }
-    f.balls = std::move(kept);
+  std::stable_sort(frame.balls.begin(), frame.balls.end(),
+                   [](const Sighting& a, const Sighting& b) { return a.score > b.score; });
+  std::vector<Sighting> kept;
+  for (const Sighting& b : frame.balls) {
+    const bool possible = std::none_of(kept.begin(), kept.end(), [&](const Sighting& k) {
+      const double sum = b.radius + k.radius, behind = std::max(0.0, length - sum);
+      if (behind >= sum) return false;
+      return std::hypot(b.x - k.x, b.y - k.y) < kSlack * std::sqrt(sum * sum - behind * behind);
+    });
+    if (possible) kept.push_back(b);
   }
+  frame.balls = std::move(kept);
 }
 
 }  // namespace tumble::analysis

@@ -25,7 +25,7 @@ struct BallPlane {
 BallPlane measure_ball_plane(const std::vector<SeenFrame>& frames, double mill_radius, const Estimate& prior);
 
 // Drops what lies beyond the shell, such as bolts.
-void drop_beyond(std::vector<SeenFrame>& frames, double mill_radius);
+void drop_beyond(SeenFrame& frame, double mill_radius);
 
 // Balls that hardly ever cover one another, though many touch, lie in one layer.
 bool in_one_layer(const std::vector<SeenFrame>& frames);
@@ -33,6 +33,6 @@ bool in_one_layer(const std::vector<SeenFrame>& frames);
 // In a shallow mill balls hardly come to lie before one another: of two sightings nearer to each other than two balls
 // can be in this length, the less certain one is dropped (a shadow, a mark, a half of a ball). Nothing happens where
 // the length is NaN.
-void drop_impossible(std::vector<SeenFrame>& frames, double length);
+void drop_impossible(SeenFrame& frame, double length);
 
 }  // namespace tumble::analysis

@@ -22,7 +22,9 @@ ChargeStatistics::ChargeStatistics(const MillGeometry& geometry)
     : geometry_(geometry),
       ring_(edge_ring(geometry.tip_radius, geometry.mean_diameter)),
       edges_(geometry.passage_frames),
-      field_(geometry.radius) {}
+      field_(geometry.radius) {
+  if (!std::isnan(geometry.gravity)) flights_.emplace(geometry.gravity);
+}
 
 void ChargeStatistics::add(int frame, double time, double mill_angle_deg, std::span<const TrackPoint> balls,
                            const std::vector<bool>& hidden) {
@@ -44,7 +46,8 @@ void ChargeStatistics::add(int frame, double time, double mill_angle_deg, std::s
   row.head = head_of(balls);
   if (!std::isnan(row.head)) heads_.push_back(row.head);
   profile_.push_back(row);
-  tracks_.insert(tracks_.end(), balls.begin(), balls.end());
+  tracks_.append(balls);
+  if (flights_) flights_->add(balls);
 }
 
 void ChargeStatistics::finish(ChargeMotion& motion) {
@@ -68,8 +71,8 @@ void ChargeStatistics::finish(ChargeMotion& motion) {
   const auto centre = field_.centre_of_circulation(1.5 * geometry_.mean_diameter);
   motion.centre_of_circulation_x = centre.x;
   motion.centre_of_circulation_y = centre.y;
-  if (!std::isnan(geometry_.gravity)) {
-    const auto flights = find_flights(tracks_, geometry_.gravity);
+  if (flights_) {
+    const auto flights = flights_->finish();
     // At the shell: still within the ring that toe and shoulder are read in. A flight worth the name carries the ball
     // half a mill radius; the medians hardly move from there on, while below they follow the hops in the shoulder.
     const FlightAngles angles = flight_angles(flights, ring_.inner, 0.5 * geometry_.radius);

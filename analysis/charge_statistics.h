@@ -1,4 +1,5 @@
 #pragma once
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -41,7 +42,8 @@ class ChargeStatistics {
   FieldStatistics field_;
   std::vector<double> heads_;
   std::vector<ProfileRow> profile_;
-  std::vector<TrackPoint> tracks_;
+  Spool<TrackPoint> tracks_;
+  std::optional<FlightLog> flights_;  // none where length or clock is unknown
 };
 
 // 99th percentile, linear between order statistics; NaN of nothing.

@@ -8,6 +8,7 @@
 #include "core/charge_motion.h"
 #include "core/image.h"
 #include "core/progress.h"
+#include "core/spool.h"
 
 namespace tumble::analysis {
 
@@ -23,10 +24,10 @@ struct FilmFindings {
   double roll = 0;                    // of the camera [rad]
   bool clockwise = false;
   int lifters = 0;
-  double lifter_angle = kNotGiven;            // of one, at drum angle 0, as seen [rad]
-  cv::Mat hidden;                             // 8 bit, of the film's own size: 255 where the drum is covered
-  std::vector<double> drum;                   // its angle, by frame of the file, as seen [rad]
-  std::vector<std::vector<FoundBall>> balls;  // by frame of the file
+  double lifter_angle = kNotGiven;  // of one, at drum angle 0, as seen [rad]
+  cv::Mat hidden;                   // 8 bit, of the film's own size: 255 where the drum is covered
+  std::vector<double> drum;         // its angle, by frame of the file, as seen [rad]
+  FrameSpool<FoundBall> balls;      // by frame of the file
 };
 
 // The whole film with its findings drawn over it, picture by picture: circle, lifters, balls with the way they came,

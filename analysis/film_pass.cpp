@@ -32,43 +32,43 @@ std::array<float, 3> colour_of(const cv::Mat& bgr, const Detection& d) {
 
 }  // namespace
 
-std::vector<FilmFrame> look_through(const std::string& path, const DrumView& drum, const BallLook& look,
-                                    const Circle& bound, double least_score, const Progress& progress) {
+FilmPass look_through(const std::string& path, const DrumView& drum, const BallLook& look, const Circle& bound,
+                      double least_score, const Progress& progress) {
   FilmReader film(path);
   const auto workers = static_cast<std::size_t>(thread_limit());
   constexpr std::size_t kEach = 4;  // frames of a batch for each worker
   std::vector<std::unique_ptr<BallEyes>> eyes;
   for (std::size_t w = 0; w < workers; ++w) eyes.push_back(std::make_unique<BallEyes>());
-  std::vector<FilmFrame> frames;
+  FilmPass pass;
   std::vector<cv::Mat> pictures;
   cv::Mat before, picture;
   double expected = 0;
   bool more = true;
   while (more) {
-    const std::size_t first = frames.size();
     pictures.clear();
     while (pictures.size() < workers * kEach && (more = film.next(picture))) {
-      FilmFrame frame;
+      DrumAngle angle;
       if (drum.reader != nullptr) {
-        frame.drum = (*drum.reader)(picture, expected);
-        expected = frame.drum.angle + drum.turn_per_frame.value;
+        angle = (*drum.reader)(picture, expected);
+        expected = angle.angle + drum.turn_per_frame.value;
       }
-      if (!before.empty()) frame.difference = picture_difference(before, picture, bound.u, bound.v, bound.radius);
+      pass.drum.push_back(angle);
+      pass.difference.push_back(before.empty() ? kNotGiven
+                                               : picture_difference(before, picture, bound.u, bound.v, bound.radius));
       before = picture.clone();
-      frames.push_back(std::move(frame));
       pictures.push_back(before);
     }
+    std::vector<std::vector<FilmBall>> balls(pictures.size());
     parallel_for(workers, 1, [&](std::size_t from, std::size_t to) {
       for (std::size_t w = from; w < to; ++w)
-        for (std::size_t i = w; i < pictures.size(); i += workers) {
-          FilmFrame& frame = frames[first + i];
-          frame.balls = detect_balls(*eyes[w], pictures[i], look, bound, least_score).balls;
-          for (const Detection& d : frame.balls) frame.colours.push_back(colour_of(pictures[i], d));
-        }
+        for (std::size_t i = w; i < pictures.size(); i += workers)
+          for (const Detection& d : detect_balls(*eyes[w], pictures[i], look, bound, least_score).balls)
+            balls[i].push_back({d, colour_of(pictures[i], d)});
     });
-    report(progress, std::min(1.0, static_cast<double>(frames.size()) / std::max(1, film.frame_count())));
+    for (const auto& of_frame : balls) pass.balls.append(of_frame);
+    report(progress, std::min(1.0, static_cast<double>(pass.frames()) / std::max(1, film.frame_count())));
   }
-  return frames;
+  return pass;
 }
 
 }  // namespace tumble::analysis

@@ -1,22 +1,31 @@
 #pragma once
+#include <array>
 #include <string>
 #include <vector>
 
 #include "analysis/ball_detector.h"
 #include "analysis/drum_calibration.h"
+#include "core/spool.h"
 
 namespace tumble::analysis {
 
-struct FilmFrame {
-  std::vector<Detection> balls;
-  std::vector<std::array<float, 3>> colours;  // of the balls' inner parts [grey levels]
-  DrumAngle drum;
-  double difference = kNotGiven;  // to the frame before (frame_clock.h)
+struct FilmBall {
+  Detection found;
+  std::array<float, 3> colour{};  // of its inner part [grey levels]
+};
+
+// What one look at every frame gives, by frame of the file.
+struct FilmPass {
+  FrameSpool<FilmBall> balls;
+  std::vector<DrumAngle> drum;
+  std::vector<double> difference;  // to the frame before (frame_clock.h)
+
+  std::size_t frames() const { return balls.size(); }
 };
 
 // The whole film once: balls, drum angle and change of every frame. Pictures are decoded one after the other and looked
 // at side by side; what is found in one does not depend on the others. `bound`: where centres of balls can be [px].
-std::vector<FilmFrame> look_through(const std::string& film, const DrumView& drum, const BallLook& look,
-                                    const Circle& bound, double least_score, const Progress& progress);
+FilmPass look_through(const std::string& film, const DrumView& drum, const BallLook& look, const Circle& bound,
+                      double least_score, const Progress& progress);
 
 }  // namespace tumble::analysis

@@ -168,6 +168,26 @@ std::vector<Flight> find_flights(std::span<const TrackPoint> tracks, double g) {
   return flights;
 }
 
+void FlightLog::take(double until) {
+  for (const Flight& f : find_flights(recent_, g_))
+    if (f.start_time >= taken_until_ && f.start_time < until) flights_.push_back(f);
+  taken_until_ = until;
+}
+
+void FlightLog::add(std::span<const TrackPoint> frame) {
+  constexpr std::size_t kMost = 400'000;  // points; many flights' time of any mill that can be filmed
+  recent_.insert(recent_.end(), frame.begin(), frame.end());
+  if (recent_.size() < kMost || frame.empty()) return;
+  const double first = recent_.front().time, span = recent_.back().time - first;
+  take(first + 0.6 * span);  // those that begin later may go on
+  std::erase_if(recent_, [&](const TrackPoint& p) { return p.time < first + 0.4 * span; });
+}
+
+std::vector<Flight> FlightLog::finish() {
+  take(1e300);
+  return std::move(flights_);
+}
+
 FlightAngles flight_angles(std::span<const Flight> flights, double shell_reach, double least_length) {
   std::vector<double> departures, impacts;
   for (const Flight& f : flights) {

@@ -19,6 +19,21 @@ struct Flight {  // one ball in free fall, from its first to its last moment on 
 inline constexpr double kLeastFlight = 0.06;  // [s]; a ball falls 18 mm in it: shorter hops say nothing
 std::vector<Flight> find_flights(std::span<const TrackPoint> tracks, double g);
 
+// The same for tracks that come frame by frame, at a memory that does not grow with them.
+class FlightLog {
+ public:
+  explicit FlightLog(double g) : g_(g) {}
+  void add(std::span<const TrackPoint> frame);  // times never fall
+  std::vector<Flight> finish();
+
+ private:
+  void take(double until);  // flights of the recent points that begin before
+
+  double g_, taken_until_ = -1e300;
+  std::vector<TrackPoint> recent_;
+  std::vector<Flight> flights_;
+};
+
 struct FlightAngles {
   Estimate departure_deg;   // median of the angles where balls leave the shell into flight
   Estimate impact_toe_deg;  // median of the angles where these flights end

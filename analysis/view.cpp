@@ -140,15 +140,15 @@ void shrink_to_film(ChargeMotion& m, int enlarged) {
   camera.metres_per_pixel *= enlarged;
   camera.width_px /= enlarged;
   camera.height_px /= enlarged;
-  for (TrackPoint& p : m.tracks) {
+  m.tracks.change([&](TrackPoint& p) {
     p.u_px = in_film(p.u_px, enlarged);
     p.v_px = in_film(p.v_px, enlarged);
-  }
+  });
 }
 
 void forget_lengths(ChargeMotion& m) {
   for (ProfileRow& row : m.profile) row.head = kNotGiven;
-  for (TrackPoint& p : m.tracks) p.x = p.y = p.vx = p.vy = p.radius = kNotGiven;
+  m.tracks.change([](TrackPoint& p) { p.x = p.y = p.vx = p.vy = p.radius = kNotGiven; });
   m.head = m.centre_of_circulation_x = m.centre_of_circulation_y = {};
   m.mill_radius = m.tip_radius = kNotGiven;
   m.field = {};

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "core/spool.h"
 #include "core/statistics.h"
 
 // What is known of a charge in motion, by truth (run file) or by measurement (film): one type for both, so that
@@ -103,7 +104,7 @@ struct ChargeMotion {
 
   std::array<double, 360> ring_occupancy{};  // time mean, bin i = [i, i + 1) degrees; NaN where hidden
   std::vector<ProfileRow> profile;
-  std::vector<TrackPoint> tracks;  // by frame, then id
+  Spool<TrackPoint> tracks;  // by frame, then id
   std::vector<TorqueRow> torque_series;
   Field field;
   std::vector<std::string> caveats;  // what a user must know before believing the numbers

@@ -219,4 +219,12 @@ std::vector<int> read_attribute(hid_t object, const char* name) {
   return numbers;
 }
 
+Part part_of(hid_t dataset, const std::string& path, std::size_t first, std::size_t count) {
+  Part part{Space(checked(H5Dget_space(dataset), "read " + path)), Space()};
+  const hsize_t start = first, length = count;
+  checked(H5Sselect_hyperslab(part.file, H5S_SELECT_SET, &start, nullptr, &length, nullptr), "read a part of " + path);
+  part.memory = Space(checked(H5Screate_simple(1, &length, nullptr), "read a part of " + path));
+  return part;
+}
+
 }  // namespace tumble::io::hdf5

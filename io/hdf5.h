@@ -118,6 +118,23 @@ std::vector<T> read_array(hid_t parent, const std::string& path, std::size_t mos
   if (!values.empty()) checked(H5Dread(set, native<T>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), "read " + path);
   return values;
 }
+// Rows [first, first + count) of an array of one dimension.
+struct Part {
+  Space file, memory;
+};
+Part part_of(hid_t dataset, const std::string& path, std::size_t first, std::size_t count);
+template <typename T>
+void write_part(hid_t dataset, const std::string& path, std::size_t first, std::span<const T> values) {
+  const Part part = part_of(dataset, path, first, values.size());
+  checked(H5Dwrite(dataset, native<T>(), part.memory, part.file, H5P_DEFAULT, values.data()), "write " + path);
+}
+template <typename T>
+std::vector<T> read_part(hid_t dataset, const std::string& path, std::size_t first, std::size_t count) {
+  const Part part = part_of(dataset, path, first, count);
+  std::vector<T> values(count);
+  checked(H5Dread(dataset, native<T>(), part.memory, part.file, H5P_DEFAULT, values.data()), "read " + path);
+  return values;
+}
 template <typename T>
 T read_scalar(hid_t parent, const std::string& path) {
   const auto values = read_array<T>(parent, path, 1);

@@ -112,15 +112,30 @@ struct Writer {
     const auto edge = static_cast<hsize_t>(values.empty() ? 0 : n);
     hdf5::write_array<double>(file, path, values, {edge, edge}, unit);
   }
-  template <typename Row, typename... T>
-  void table(const std::string& path, const std::vector<Row>& rows, const Column<Row, T>&... columns) {
+  template <typename Rows, typename Row, typename... T>
+  void table(const std::string& path, const Rows& rows, const Column<Row, T>&... columns) {
     const auto write = [&](const auto& column) {
-      std::vector<std::decay_t<decltype(std::declval<Row>().*column.of)>> values;
-      values.reserve(rows.size());
-      for (const Row& row : rows) values.push_back(row.*column.of);
-      array(path + "/" + column.name, column.unit, values);
+      using Value = std::decay_t<decltype(std::declval<Row>().*column.of)>;
+      const std::string name = path + "/" + column.name;
+      const auto set = hdf5::make_array(file, name, hdf5::native<Value>(), {rows.size()}, column.unit);
+      std::vector<Value> values;
+      each_block(rows, [&](std::size_t first, std::span<const Row> block) {
+        values.clear();
+        for (const Row& row : block) values.push_back(row.*column.of);
+        hdf5::write_part<Value>(set, name, first, values);
+      });
     };
     (write(columns), ...);
+  }
+
+ private:
+  template <typename Row, typename Use>
+  static void each_block(const std::vector<Row>& rows, const Use& use) {
+    if (!rows.empty()) use(0, std::span<const Row>(rows));
+  }
+  template <typename Row, typename Use>
+  static void each_block(const Spool<Row>& rows, const Use& use) {
+    rows.each_block(use);
   }
 };
 
@@ -166,18 +181,40 @@ struct Reader {
     values = hdf5::read_array<double>(file, path, cells);
     if (!values.empty() && values.size() != cells) throw hdf5::Failure(path + " does not fit field/cells");
   }
-  template <typename Row, typename... T>
-  void table(const std::string& path, std::vector<Row>& rows, const Column<Row, T>&... columns) const {
+  template <typename Rows, typename Row, typename... T>
+  void table(const std::string& path, Rows& rows, const Column<Row, T>&... columns) const {
+    std::size_t count = 0;
     bool first = true;
-    const auto read = [&](const auto& column) {
-      std::vector<std::decay_t<decltype(std::declval<Row>().*column.of)>> values;
+    const auto look = [&](const auto& column) {
       const std::string name = path + "/" + column.name;
-      array(name, column.unit, values);
-      if (std::exchange(first, false)) rows.resize(values.size());
-      if (values.size() != rows.size()) throw hdf5::Failure(name + " has another length than its neighbours");
-      for (std::size_t i = 0; i < rows.size(); ++i) rows[i].*column.of = values[i];
+      const std::size_t here = hdf5::count_of(hdf5::open_array(file, name), name, kMostRows);
+      if (std::exchange(first, false)) count = here;
+      if (here != count) throw hdf5::Failure(name + " has another length than its neighbours");
     };
-    (read(columns), ...);
+    (look(columns), ...);
+    constexpr std::size_t kBlock = 65'536;
+    std::vector<Row> block;
+    for (std::size_t from = 0; from < count; from += kBlock) {
+      block.assign(std::min(kBlock, count - from), {});
+      const auto read = [&](const auto& column) {
+        using Value = std::decay_t<decltype(std::declval<Row>().*column.of)>;
+        const std::string name = path + "/" + column.name;
+        const auto values = hdf5::read_part<Value>(hdf5::open_array(file, name), name, from, block.size());
+        for (std::size_t i = 0; i < block.size(); ++i) block[i].*column.of = values[i];
+      };
+      (read(columns), ...);
+      append(rows, std::span<const Row>(block));
+    }
+  }
+
+ private:
+  template <typename Row>
+  static void append(std::vector<Row>& rows, std::span<const Row> block) {
+    rows.insert(rows.end(), block.begin(), block.end());
+  }
+  template <typename Row>
+  static void append(Spool<Row>& rows, std::span<const Row> block) {
+    rows.append(block);
   }
 };
 

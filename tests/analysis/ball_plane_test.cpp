@@ -77,13 +77,13 @@ TEST(BallPlane, TellsOneLayerFromBallsThatCoverOneAnother) {
 }
 
 TEST(BallPlane, DropsWhatLiesBeyondTheShellAndWhatCannotBeThereToo) {
-  std::vector<SeenFrame> frames(1);
-  frames[0].balls = {ball(0.29, 0), ball(0.296, 0.1), ball(0.1, 0), ball(0.11, 0, 0.4), ball(0.13, 0)};
-  drop_beyond(frames, 0.3);
-  ASSERT_EQ(frames[0].balls.size(), 4u);  // the second was a bolt
-  drop_impossible(frames, 0.02);
-  ASSERT_EQ(frames[0].balls.size(), 3u);
-  for (const Sighting& s : frames[0].balls) EXPECT_GT(s.score, 0.5);  // the less certain one of the two went
+  SeenFrame frame;
+  frame.balls = {ball(0.29, 0), ball(0.296, 0.1), ball(0.1, 0), ball(0.11, 0, 0.4), ball(0.13, 0)};
+  drop_beyond(frame, 0.3);
+  ASSERT_EQ(frame.balls.size(), 4u);  // the second was a bolt
+  drop_impossible(frame, 0.02);
+  ASSERT_EQ(frame.balls.size(), 3u);
+  for (const Sighting& s : frame.balls) EXPECT_GT(s.score, 0.5);  // the less certain one of the two went
 }
 
 }  // namespace
