@@ -31,6 +31,25 @@ double row_mean(const cv::Mat& polar, int row, int from, int to) {
   return cv::mean(polar.row(row).colRange(from, std::max(from + 1, to)))[0];
 }
 
+// Where a pattern of this power begins: the radius that best parts amplitudes without it from those with it (least
+// squares). No share of the strongest would do: between the lifters' tips and the shell's edge the pattern is weaker
+// than at both.
+double begins_at(const std::vector<double>& power, int inner) {
+  const auto n = static_cast<int>(power.size());
+  double all = 0, within = 0, best = 0;
+  for (int r = inner; r < n; ++r) all += std::sqrt(power[static_cast<std::size_t>(r)]);
+  int at = inner;
+  for (int r = inner; r + 1 < n; ++r) {
+    within += std::sqrt(power[static_cast<std::size_t>(r)]);
+    const double left = r + 1 - inner, right = n - r - 1, step = (all - within) / right - within / left;
+    const double parted = step * step * left * right;
+    if (step <= 0 || parted <= best) continue;
+    best = parted;
+    at = r + 1;
+  }
+  return at - 0.5;
+}
+
 }  // namespace
 
 double charge_reach(const std::vector<cv::Mat>& shares, const Circle& centre) {
@@ -113,11 +132,7 @@ StillLifters find_still_lifters(const std::vector<cv::Mat>& pictures, const std:
     best = total.begin() + (order / 2 - kLeast);
   lifters.count = known_count > 0 ? known_count : kLeast + static_cast<int>(best - total.begin());
   if (lifters.count < kLeast || lifters.count > kMost) return lifters;
-  const auto& p = power[static_cast<std::size_t>(lifters.count)];
-  const auto strongest = std::max_element(p.begin() + wide, p.end());
-  auto at = strongest;
-  while (at > p.begin() + inner && *at > 0.25 * *strongest) --at;  // half the amplitude
-  lifters.tip_radius = static_cast<double>(at - p.begin()) + 0.5;
+  lifters.tip_radius = begins_at(power[static_cast<std::size_t>(lifters.count)], inner);
   return lifters;
 }
 
