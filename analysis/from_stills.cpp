@@ -10,6 +10,7 @@
 #include "analysis/charge_mask.h"
 #include "analysis/charge_motion.h"
 #include "analysis/charge_statistics.h"
+#include "analysis/still_edges.h"
 #include "analysis/still_view.h"
 #include "analysis/view.h"
 #include "core/angle.h"
@@ -25,6 +26,7 @@ namespace fs = std::filesystem;
 
 constexpr double kBirthScore = 0.4;    // of a ball that is believed
 constexpr double kClearLean = 5;       // of the charge to one side [degrees]
+constexpr double kCircleError = 1;     // of axis and shell in a still [px]
 constexpr double kTallLifters = 1.15;  // shell over tips, at most
 constexpr double kSameScale = 0.1;     // by which scales from the balls and from the shell may differ, of the logarithm
 
@@ -256,12 +258,17 @@ ChargeMotion measure_stills(const std::string& folder, const FilmOptions& option
   }
   statistics.finish(motion);
   // Edges from the pixels that show charge: not every ball of a still is found, but all of them have its colours.
-  const ChargeEdges whole = find_edges(smooth(sum, width));
+  const EdgeEstimates whole = edges_of_still(sum, width, degrees(diameter / view.tip_radius));
+  const double by_circle = degrees(kCircleError / view.mill.radius);
+  const auto with_error = [&](Estimate edge, const std::vector<double>& single) {
+    edge.se = std::hypot(std::fmax(edge.se, mean_direction(single).se), by_circle);
+    return edge;
+  };
   Estimate* toe[] = {&motion.toe_deg, &motion.toe_bulk_deg, &motion.toe_outer_deg};
   Estimate* shoulder[] = {&motion.shoulder_deg, &motion.shoulder_bulk_deg, &motion.shoulder_outer_deg};
   for (std::size_t l = 0; l < 3; ++l) {
-    *toe[l] = {whole.toe[l], mean_direction(toes[l]).se};
-    *shoulder[l] = {whole.shoulder[l], mean_direction(shoulders[l]).se};
+    *toe[l] = with_error(whole.toe[l], toes[l]);
+    *shoulder[l] = with_error(whole.shoulder[l], shoulders[l]);
   }
   motion.ring_occupancy = sum;
   for (std::size_t i = 0; i < edges.size(); ++i) {
