@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "core/angle.h"
 #include "core/random.h"
@@ -14,6 +15,15 @@ constexpr double kSomeCharge = 0.1;  // of the plateau: from here on there might
 constexpr int kLeastPatches = 5;     // of charge, to tell how uneven it is
 constexpr std::size_t kBins = 360;
 
+// As many as lie within a standard deviation; a bed that falls apart in one replicate of ten must not have all the say.
+double within_which_most_lie(std::vector<double>& misses) {
+  std::erase_if(misses, [](double m) { return std::isnan(m); });
+  if (misses.size() < kReplicates / 2) return kNotGiven;
+  const auto at = misses.begin() + static_cast<std::ptrdiff_t>(0.683 * static_cast<double>(misses.size()));
+  std::nth_element(misses.begin(), at, misses.end());
+  return *at;
+}
+
 }  // namespace
 
 EdgeEstimates edges_of_still(const RingProfile& profile, int width, double ball) {
@@ -25,23 +35,25 @@ EdgeEstimates edges_of_still(const RingProfile& profile, int width, double ball)
     result.toe[l].value = edges.toe[l];
     result.shoulder[l].value = edges.shoulder[l];
   }
-  // Patches of one ball: how far each lies from what is about it, where the charge is whole.
+  // Patches of one ball: how far each lies from their mean, where the charge is whole.
   const auto patch = static_cast<std::size_t>(std::clamp(std::lround(ball), 1L, 60L));
   std::vector<double> deviations;
   for (std::size_t first = 0; first + patch <= kBins; first += patch) {
     double sum = 0;
     bool whole = true;
     for (std::size_t i = first; i < first + patch; ++i) {
-      sum += profile[i] - smoothed[i];
-      whole = whole && smoothed[i] > kEdgeShare[kBulk] * edges.plateau;  // not so where hidden
+      sum += profile[i];
+      whole = whole && smoothed[i] > kEdgeShare[kHalf] * edges.plateau;  // not so where hidden
     }
     if (whole) deviations.push_back(sum / static_cast<double>(patch));
   }
   if (static_cast<int>(deviations.size()) < kLeastPatches) return result;
+  const double mean =
+      std::accumulate(deviations.begin(), deviations.end(), 0.0) / static_cast<double>(deviations.size());
+  for (double& d : deviations) d -= mean;
 
   Random random(1);
-  std::array<double, 3> toe{}, shoulder{};
-  std::array<int, 3> toes{}, shoulders{};
+  std::array<std::vector<double>, 3> toe, shoulder;  // how far replicates lie off
   for (int k = 0; k < kReplicates; ++k) {
     RingProfile other = profile;
     const std::size_t phase = random.below(patch);
@@ -52,14 +64,13 @@ EdgeEstimates edges_of_still(const RingProfile& profile, int width, double ball)
     }
     const ChargeEdges e = find_edges(smooth(other, width));
     for (std::size_t l = 0; l < kEdgeShare.size(); ++l) {
-      const double t = wrap_180(e.toe[l] - edges.toe[l]), s = wrap_180(e.shoulder[l] - edges.shoulder[l]);
-      if (!std::isnan(t)) toe[l] += t * t, ++toes[l];
-      if (!std::isnan(s)) shoulder[l] += s * s, ++shoulders[l];
+      toe[l].push_back(std::abs(wrap_180(e.toe[l] - edges.toe[l])));
+      shoulder[l].push_back(std::abs(wrap_180(e.shoulder[l] - edges.shoulder[l])));
     }
   }
   for (std::size_t l = 0; l < kEdgeShare.size(); ++l) {
-    if (toes[l] > kReplicates / 2) result.toe[l].se = std::sqrt(toe[l] / toes[l]);
-    if (shoulders[l] > kReplicates / 2) result.shoulder[l].se = std::sqrt(shoulder[l] / shoulders[l]);
+    result.toe[l].se = within_which_most_lie(toe[l]);
+    result.shoulder[l].se = within_which_most_lie(shoulder[l]);
   }
   return result;
 }

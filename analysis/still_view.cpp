@@ -31,16 +31,17 @@ double row_mean(const cv::Mat& polar, int row, int from, int to) {
   return cv::mean(polar.row(row).colRange(from, std::max(from + 1, to)))[0];
 }
 
-// Where a pattern of this power begins: the radius that best parts amplitudes without it from those with it (least
-// squares). No share of the strongest would do: between the lifters' tips and the shell's edge the pattern is weaker
-// than at both.
+// Where a pattern of this power begins: the radius that best parts powers without it from those with it, by magnitude
+// (least squares of the logarithm). No share of the strongest would do: between the lifters' tips and the shell's edge
+// the pattern is weaker than at both.
 double begins_at(const std::vector<double>& power, int inner) {
-  const auto n = static_cast<int>(power.size());
+  const auto magnitude = [&](int r) { return std::log1p(power[static_cast<std::size_t>(r)]); };  // from a grey level on
+  const int n = static_cast<int>(power.size());
   double all = 0, within = 0, best = 0;
-  for (int r = inner; r < n; ++r) all += std::sqrt(power[static_cast<std::size_t>(r)]);
+  for (int r = inner; r < n; ++r) all += magnitude(r);
   int at = inner;
   for (int r = inner; r + 1 < n; ++r) {
-    within += std::sqrt(power[static_cast<std::size_t>(r)]);
+    within += magnitude(r);
     const double left = r + 1 - inner, right = n - r - 1, step = (all - within) / right - within / left;
     const double parted = step * step * left * right;
     if (step <= 0 || parted <= best) continue;
