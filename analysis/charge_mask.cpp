@@ -132,21 +132,23 @@ ChargeShape charge_shape(const cv::Mat& share, const Circle& mill) {
 RingProfile mask_occupancy(const cv::Mat& share, const Circle& mill, const Ring& ring, bool mirror) {
   RingProfile profile;
   constexpr int kPerBin = 8;
+  constexpr double kSeen = 0.9;  // of a bin, by the picture: the part inside it is not like the rest
   const int radii = std::max(4, static_cast<int>(std::ceil(2 * (ring.outer - ring.inner))));
   for (std::size_t bin = 0; bin < profile.size(); ++bin) {
-    double sum = 0, seen = 0;
+    double sum = 0, seen = 0, all = 0;
     for (int k = 0; k < kPerBin; ++k) {
       const double a = radians(static_cast<double>(bin) + (k + 0.5) / kPerBin);
       for (int j = 0; j < radii; ++j) {
         const double r = ring.inner + (ring.outer - ring.inner) * (j + 0.5) / radii;
         const int u = static_cast<int>(std::lround(mill.u + (mirror ? -1 : 1) * r * std::cos(a)));
         const int v = static_cast<int>(std::lround(mill.v - r * std::sin(a)));
+        all += r;
         if (u < 0 || v < 0 || u >= share.cols || v >= share.rows) continue;
         seen += r;
         if (share.at<float>(v, u) > 0.5f) sum += r;
       }
     }
-    profile[bin] = seen > 0 ? sum / seen : kNotGiven;
+    profile[bin] = seen > kSeen * all ? sum / seen : kNotGiven;
   }
   return profile;
 }

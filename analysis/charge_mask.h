@@ -34,7 +34,8 @@ struct ChargeShape {
 ChargeShape charge_shape(const cv::Mat& share, const Circle& mill);
 
 // Areal occupancy of a ring (radii in pixels) by the pixels that show charge, by half at least; angles
-// counter-clockwise as seen, mirrored (x -> -x) where asked.
+// counter-clockwise as seen, mirrored (x -> -x) where asked. NaN where the
+// picture ends.
 RingProfile mask_occupancy(const cv::Mat& share, const Circle& mill, const Ring& ring, bool mirror);
 
 }  // namespace tumble::analysis

@@ -27,6 +27,8 @@ namespace fs = std::filesystem;
 constexpr double kBirthScore = 0.4;    // of a ball that is believed
 constexpr double kClearLean = 5;       // of the charge to one side [degrees]
 constexpr double kCircleError = 1;     // of axis and shell in a still [px]
+constexpr double kLeastRadius = 2.5;   // of the largest balls, where these are to be told apart [px]
+constexpr double kWhole = 0.98;        // of the mill's area in the picture, for a filling
 constexpr double kTallLifters = 1.15;  // shell over tips, at most
 constexpr double kSameScale = 0.1;     // by which scales from the balls and from the shell may differ, of the logarithm
 
@@ -167,7 +169,10 @@ ChargeMotion measure_stills(const std::string& folder, const FilmOptions& option
     if (std::abs(std::log(look.radii.front() / known_radii(known).front() / scale)) > kSameScale)
       look = see({0.97 * scale, 1.06 * scale});  // balls lie inside the shell, not against it all along
   }
-  const bool resolved = std::any_of(balls.begin(), balls.end(), [](const auto& f) { return !f.empty(); });
+  const bool large_enough = !(reach > 0) || known_radii(known).empty() ||
+                            !(known_radii(known).back() * reach < kLeastRadius * 0.5 * known.mill.diameter);
+  const bool resolved =
+      large_enough && std::any_of(balls.begin(), balls.end(), [](const auto& f) { return !f.empty(); });
   MillView view;
   if (resolved) {
     view = find_view(balls, look, outline, known, motion.caveats);
@@ -275,7 +280,12 @@ ChargeMotion measure_stills(const std::string& folder, const FilmOptions& option
     motion.profile[i].toe_deg = edges[i].toe[kHalf];
     motion.profile[i].shoulder_deg = edges[i].shoulder[kHalf];
   }
-  motion.filling = mean_of_series(fillings);
+  const double in_picture = charge_shape(cv::Mat::ones(shares[0].size(), CV_32F), view.mill).area /
+                            (kPi * view.mill.radius * view.mill.radius);
+  if (in_picture > kWhole)
+    motion.filling = mean_of_series(fillings);
+  else
+    motion.caveats.push_back(fmt::format("only {:.0f} % of the mill lie in the picture: no filling", 100 * in_picture));
   if (std::isnan(view.metres_per_pixel)) forget_lengths(motion);
   report(progress, 1.0);
   return motion;

@@ -87,9 +87,13 @@ StillLifters find_still_lifters(const std::vector<cv::Mat>& pictures, const std:
     cv::cvtColor(pictures[i], grey, cv::COLOR_BGR2GRAY);
     grey.convertTo(grey, CV_32F);
     const cv::Mat polar = unroll(grey, mill, outer + 1), charge = unroll(shares[i], mill, outer + 1);
-    std::vector<int> free;  // directions without charge
-    for (int k = 0; k < kAngles; ++k)
-      if (row_mean(charge, k, wide, outer) < 0.05) free.push_back(k);
+    const cv::Rect2d seen_whole(0, 0, grey.cols - 1, grey.rows - 1);
+    std::vector<int> free;  // directions without charge, in the picture
+    for (int k = 0; k < kAngles; ++k) {
+      const double a = 2 * kPi * (k + 0.5) / kAngles;
+      const cv::Point2d end(mill.u + outer * std::cos(a), mill.v - outer * std::sin(a));
+      if (seen_whole.contains(end) && row_mean(charge, k, wide, outer) < 0.05) free.push_back(k);
+    }
     if (static_cast<int>(free.size()) < kAngles / 4) continue;
     ++used;
     for (int r = inner; r <= outer; ++r) {

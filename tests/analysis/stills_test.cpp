@@ -93,14 +93,26 @@ ChargeMotion motion_of(const cv::Mat& picture, const Config& known) {
   return motion;
 }
 
-TEST(Stills, ChargeLiesOnTheSideThatRises) {
+cv::Mat painted_bed() {
   PaintedMill mill;
   mill.width = 640;
   mill.height = 480;
   mill.u = 330;
   mill.v = 236;
   mill.radius = 190;
-  const cv::Mat picture = paint(mill, packed_bed(mill, 7, 35, 3), 40);
+  return paint(mill, packed_bed(mill, 7, 35, 3), 40);
+}
+
+TEST(Stills, TellNothingOfWhatLiesOutsideThePicture) {
+  const cv::Mat picture = painted_bed();
+  const ChargeMotion motion = motion_of(picture.colRange(230, picture.cols).clone(), {});  // the toe is cut off
+  EXPECT_TRUE(std::isnan(motion.toe_deg.value)) << motion.toe_deg.value;
+  EXPECT_TRUE(std::isnan(motion.filling.value));
+  EXPECT_NEAR(wrap_180(motion.shoulder_deg.value - motion_of(picture, {}).shoulder_deg.value), 0, 3);
+}
+
+TEST(Stills, ChargeLiesOnTheSideThatRises) {
+  const cv::Mat picture = painted_bed();
   cv::Mat mirrored;
   cv::flip(picture, mirrored, 1);
   const ChargeMotion there = motion_of(picture, {}), here = motion_of(mirrored, {});
