@@ -1,9 +1,11 @@
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <cmath>
 #include <filesystem>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
+#include <string>
 
 #include "analysis/charge_mask.h"
 #include "analysis/charge_motion.h"
@@ -83,7 +85,7 @@ TEST(StillEdges, ErrorsAreWhatOtherPicturesOfTheSameChargeScatterBy) {
 }
 
 ChargeMotion motion_of(const cv::Mat& picture, const Config& known) {
-  const fs::path folder = fs::path(::testing::TempDir()) / "one_still";
+  const fs::path folder = fs::path(::testing::TempDir()) / ("still_" + std::to_string(getpid()));
   fs::create_directories(folder);
   cv::imwrite((folder / "still.png").string(), picture);
   FilmOptions options;
@@ -127,6 +129,8 @@ struct Photograph {
   const char* file;
   double toe, shoulder, within;  // read by others [degrees]
 };
+
+std::ostream& operator<<(std::ostream& out, const Photograph& p) { return out << fs::path(p.file).stem().string(); }
 
 class Photographs : public ::testing::TestWithParam<Photograph> {};
 
