@@ -20,6 +20,42 @@ cv::Mat charge_share(const Detections& seen, cv::Size picture) {
   return share;
 }
 
+void cover_discs(cv::Mat& share, const std::vector<Detection>& balls, const MillView& view) {
+  for (const Detection& d : balls) {
+    const cv::Point2d at = true_centre(d, view);
+    const double r = view.radii[static_cast<std::size_t>(d.size_class)];
+    for (int v = std::max(0, cvCeil(at.y - r)); v <= std::min(share.rows - 1, cvFloor(at.y + r)); ++v)
+      for (int u = std::max(0, cvCeil(at.x - r)); u <= std::min(share.cols - 1, cvFloor(at.x + r)); ++u)
+        if (std::hypot(u - at.x, v - at.y) <= r) share.at<float>(v, u) = 1;
+  }
+}
+
+void add_charge_colours(std::vector<cv::Mat>& shares, const std::vector<cv::Mat>& pictures, const Circle& mill) {
+  constexpr double kClear = 20;   // times as common in the charge as elsewhere
+  constexpr float kNone = 0.05f;  // share of the charge where there is surely none
+  constexpr int kBins = 16;       // per colour channel
+  constexpr double kInside = 0.98;
+  const auto cell = [](const cv::Vec3b& c) {
+    return static_cast<std::size_t>((c[0] * kBins / 256 * kBins + c[1] * kBins / 256) * kBins + c[2] * kBins / 256);
+  };
+  const auto over_mill = [&](const auto& visit) {
+    for (std::size_t i = 0; i < pictures.size(); ++i)
+      for (int v = 0; v < pictures[i].rows; ++v)
+        for (int u = 0; u < pictures[i].cols; ++u)
+          if (std::hypot(u - mill.u, v - mill.v) < kInside * mill.radius)
+            visit(cell(pictures[i].at<cv::Vec3b>(v, u)), shares[i].at<float>(v, u));
+  };
+  std::vector<double> charge(kBins * kBins * kBins, 0.0), empty(kBins * kBins * kBins, 1.0);  // one seen of each: rare
+  double in_charge = 0, in_empty = static_cast<double>(empty.size());
+  over_mill([&](std::size_t colour, float share) {
+    if (share > 0.5f) charge[colour] += 1, in_charge += 1;
+    if (share < kNone) empty[colour] += 1, in_empty += 1;
+  });
+  over_mill([&](std::size_t colour, float& share) {
+    if (charge[colour] * in_empty > kClear * empty[colour] * in_charge) share = 1;
+  });
+}
+
 std::vector<cv::Mat> two_tone_shares(const std::vector<cv::Mat>& pictures, const Circle& mill) {
   constexpr double kClear = 0.9;   // share of the variance that lies between the tones
   constexpr double kInner = 0.97;  // of the circle: its edge has a tone of its own
@@ -78,24 +114,41 @@ std::vector<cv::Mat> two_tone_shares(const std::vector<cv::Mat>& pictures, const
   return shares;
 }
 
+ChargeShape charge_shape(const cv::Mat& share, const Circle& mill) {
+  ChargeShape shape;
+  double n = 0, u_sum = 0, v_sum = 0;
+  for (int v = 0; v < share.rows; ++v)
+    for (int u = 0; u < share.cols; ++u) {
+      if (share.at<float>(v, u) <= 0.5f || std::hypot(u - mill.u, v - mill.v) > mill.radius) continue;
+      n += 1;
+      u_sum += u - mill.u;
+      v_sum += v - mill.v;
+    }
+  shape.area = n;
+  if (n > 0) shape.lean_deg = degrees(std::atan2(u_sum, v_sum));
+  return shape;
+}
+
 RingProfile mask_occupancy(const cv::Mat& share, const Circle& mill, const Ring& ring, bool mirror) {
   RingProfile profile;
   constexpr int kPerBin = 8;
+  constexpr double kSeen = 0.9;  // of a bin, by the picture: the part inside it is not like the rest
   const int radii = std::max(4, static_cast<int>(std::ceil(2 * (ring.outer - ring.inner))));
   for (std::size_t bin = 0; bin < profile.size(); ++bin) {
-    double sum = 0, seen = 0;
+    double sum = 0, seen = 0, all = 0;
     for (int k = 0; k < kPerBin; ++k) {
       const double a = radians(static_cast<double>(bin) + (k + 0.5) / kPerBin);
       for (int j = 0; j < radii; ++j) {
         const double r = ring.inner + (ring.outer - ring.inner) * (j + 0.5) / radii;
         const int u = static_cast<int>(std::lround(mill.u + (mirror ? -1 : 1) * r * std::cos(a)));
         const int v = static_cast<int>(std::lround(mill.v - r * std::sin(a)));
+        all += r;
         if (u < 0 || v < 0 || u >= share.cols || v >= share.rows) continue;
         seen += r;
         if (share.at<float>(v, u) > 0.5f) sum += r;
       }
     }
-    profile[bin] = seen > 0 ? sum / seen : kNotGiven;
+    profile[bin] = seen > kSeen * all ? sum / seen : kNotGiven;
   }
   return profile;
 }

@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -8,8 +10,10 @@
 #include "analysis/charge_mask.h"
 #include "analysis/charge_motion.h"
 #include "analysis/charge_statistics.h"
+#include "analysis/still_edges.h"
 #include "analysis/still_view.h"
 #include "analysis/view.h"
+#include "core/angle.h"
 #include "core/error.h"
 #include "core/mill_shape.h"
 #include "core/statistics.h"
@@ -20,7 +24,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kBirthScore = 0.4;  // of a ball that is believed
+constexpr double kBirthScore = 0.4;    // of a ball that is believed
+constexpr double kClearLean = 5;       // of the charge to one side [degrees]
+constexpr double kCircleError = 1;     // of axis and shell in a still [px]
+constexpr double kLeastRadius = 2.5;   // of the largest balls, where these are to be told apart [px]
+constexpr double kWhole = 0.98;        // of the mill's area in the picture, for a filling
+constexpr double kTallLifters = 1.15;  // shell over tips, at most
+constexpr double kSameScale = 0.1;     // by which scales from the balls and from the shell may differ, of the logarithm
 
 std::vector<cv::Mat> read_stills(const std::string& folder) {
   std::error_code ec;
@@ -55,13 +65,18 @@ void place_shell(MillView& view, const DrumOutline& outline, double reach, const
   const double metres = view.mill.radius * view.metres_per_pixel;
   view.mill = {outline.centre.u, outline.centre.v, reach};
   double best = 0;
-  for (const RingEdge& ring : outline.rings) {
-    const double miss = std::abs(ring.circle.radius / reach - 1) / 0.03;
-    const double weight = ring.coverage * std::abs(ring.strength) * (1 - miss * miss);
-    if (miss > 1 || weight <= best) continue;
-    best = weight;
-    view.mill = ring.circle;
-  }
+  const auto put_onto_edges_from = [&](double least, double most) {
+    for (const RingEdge& ring : outline.rings) {
+      const double at = (ring.circle.radius / reach - least) / (most - least), miss = 2 * at - 1;
+      const double weight = ring.coverage * std::abs(ring.strength) * (1 - miss * miss);
+      if (std::abs(miss) > 1 || weight <= best) continue;
+      best = weight;
+      view.mill = ring.circle;
+    }
+  };
+  put_onto_edges_from(0.97, 1.03);
+  // No edge there: the charge seems to end at the lifters' tips, and what lies between them is dark.
+  if (best == 0) put_onto_edges_from(1.03, kTallLifters);
   view.tip_radius = view.mill.radius;
   if (!(known.mill.diameter > 0)) return;
   view.metres_per_pixel = metres / view.mill.radius;
@@ -73,6 +88,23 @@ void place_shell(MillView& view, const DrumOutline& outline, double reach, const
   const auto sizes = known_radii(known);
   if (sizes.size() == view.radii.size())
     for (std::size_t c = 0; c < sizes.size(); ++c) view.radii[c] = sizes[c] / view.metres_per_pixel;
+}
+
+// The drive lifts the charge: its weight pulls against the rotation, so it lies on the side that rises.
+Rotation rotation_of(const std::vector<cv::Mat>& shares, const Circle& mill, std::vector<std::string>& caveats) {
+  std::vector<double> leans;
+  for (const cv::Mat& share : shares) leans.push_back(charge_shape(share, mill).lean_deg);
+  const double lean = mean_direction(leans).value;
+  if (std::abs(wrap_180(lean)) > kClearLean && std::abs(wrap_180(lean)) < 90) {
+    const bool clockwise = wrap_180(lean) < 0;
+    caveats.push_back(
+        fmt::format("stills do not show the rotation: taken as {}, the charge lying {:.0f} degrees up on "
+                    "that side; --rotation overrules",
+                    clockwise ? "clockwise" : "counter-clockwise", std::abs(wrap_180(lean))));
+    return clockwise ? Rotation::kClockwise : Rotation::kCounterClockwise;
+  }
+  caveats.push_back("stills do not show the direction of rotation: taken as counter-clockwise; give --rotation");
+  return Rotation::kUnknown;
 }
 
 // Of balls that cannot be told apart [px]: as known, else a guess that is small beside the mill.
@@ -98,11 +130,6 @@ ChargeMotion measure_stills(const std::string& folder, const FilmOptions& option
   motion.source = MotionSource::kStills;
   motion.frames = static_cast<int>(stills.size());
   motion.rotation = options.rotation;
-  if (motion.rotation == Rotation::kUnknown)
-    motion.caveats.push_back(
-        "stills do not show the direction of rotation: taken as counter-clockwise; give --rotation");
-  const bool clockwise = motion.rotation == Rotation::kClockwise;
-
   DrumOutline outline;
   cv::Mat mean = cv::Mat::zeros(stills[0].size(), CV_32F), grey;
   for (const cv::Mat& still : stills) {
@@ -119,16 +146,33 @@ ChargeMotion measure_stills(const std::string& folder, const FilmOptions& option
   report(progress, 0.1);
 
   BallEyes eyes;
-  const BallLook look = learn_look(eyes.net, stills, outline.centre, known_radii(known));
   std::vector<std::vector<Detection>> balls;
   std::vector<cv::Mat> shares;
-  for (const cv::Mat& still : stills) {
-    const Detections seen = detect_balls(eyes, still, look, outline.centre, kBirthScore);
-    balls.push_back(seen.balls);
-    shares.push_back(charge_share(seen, still.size()));
-    report(progress, 0.1 + 0.5 * static_cast<double>(balls.size()) / static_cast<double>(stills.size()));
+  const auto see = [&](ScaleRange scales) {
+    const BallLook look = learn_look(eyes.net, stills, outline.centre, known_radii(known), scales);
+    balls.clear();
+    shares.clear();
+    for (const cv::Mat& still : stills) {
+      const Detections seen = detect_balls(eyes, still, look, outline.centre, kBirthScore);
+      balls.push_back(seen.balls);
+      shares.push_back(charge_share(seen, still.size()));
+      report(progress, 0.1 + 0.5 * static_cast<double>(balls.size()) / static_cast<double>(stills.size()));
+    }
+    return look;
+  };
+  BallLook look = see({});
+  // Graded balls look alike one class up or down; the charge ends at the shell at any scale, and that tells the right
+  // one.
+  const double reach = charge_reach(shares, outline.centre);
+  if (!look.radii.empty() && !known_radii(known).empty() && known.mill.diameter > 0 && reach > 0) {
+    const double scale = reach / (0.5 * known.mill.diameter);
+    if (std::abs(std::log(look.radii.front() / known_radii(known).front() / scale)) > kSameScale)
+      look = see({0.97 * scale, 1.06 * scale});  // balls lie inside the shell, not against it all along
   }
-  const bool resolved = std::any_of(balls.begin(), balls.end(), [](const auto& f) { return !f.empty(); });
+  const bool large_enough = !(reach > 0) || known_radii(known).empty() ||
+                            !(known_radii(known).back() * reach < kLeastRadius * 0.5 * known.mill.diameter);
+  const bool resolved =
+      large_enough && std::any_of(balls.begin(), balls.end(), [](const auto& f) { return !f.empty(); });
   MillView view;
   if (resolved) {
     view = find_view(balls, look, outline, known, motion.caveats);
@@ -143,6 +187,12 @@ ChargeMotion measure_stills(const std::string& folder, const FilmOptions& option
     view.metres_per_pixel = 0.5 * known.mill.diameter / view.mill.radius;
   }
   place_shell(view, outline, charge_reach(shares, outline.centre), known);
+  if (resolved) {
+    for (std::size_t i = 0; i < stills.size(); ++i) cover_discs(shares[i], balls[i], view);
+    add_charge_colours(shares, stills, view.mill);
+  }
+  if (motion.rotation == Rotation::kUnknown) motion.rotation = rotation_of(shares, view.mill, motion.caveats);
+  const bool clockwise = motion.rotation == Rotation::kClockwise;
   motion.camera.centre_u_px = view.mill.u;
   motion.camera.centre_v_px = view.mill.v;
   motion.camera.radius_px = view.mill.radius;
@@ -193,8 +243,8 @@ ChargeMotion measure_stills(const std::string& folder, const FilmOptions& option
       toes[l].push_back(edges.back().toe[l]);
       shoulders[l].push_back(edges.back().shoulder[l]);
     }
-    const double covered = cv::countNonZero(shares[i] > 0.5);
-    fillings.push_back(covered / (kSettledAreaShare * kPi * view.mill.radius * view.mill.radius));
+    fillings.push_back(charge_shape(shares[i], view.mill).area /
+                       (kSettledAreaShare * kPi * view.mill.radius * view.mill.radius));
     std::vector<TrackPoint> points;
     for (const Detection& d : balls[i]) {
       TrackPoint p;
@@ -213,19 +263,29 @@ ChargeMotion measure_stills(const std::string& folder, const FilmOptions& option
   }
   statistics.finish(motion);
   // Edges from the pixels that show charge: not every ball of a still is found, but all of them have its colours.
-  const ChargeEdges whole = find_edges(smooth(sum, width));
+  const EdgeEstimates whole = edges_of_still(sum, width, degrees(diameter / view.tip_radius));
+  const double by_circle = degrees(kCircleError / view.mill.radius);
+  const auto with_error = [&](Estimate edge, const std::vector<double>& single) {
+    edge.se = std::hypot(std::fmax(edge.se, mean_direction(single).se), by_circle);
+    return edge;
+  };
   Estimate* toe[] = {&motion.toe_deg, &motion.toe_bulk_deg, &motion.toe_outer_deg};
   Estimate* shoulder[] = {&motion.shoulder_deg, &motion.shoulder_bulk_deg, &motion.shoulder_outer_deg};
   for (std::size_t l = 0; l < 3; ++l) {
-    *toe[l] = {whole.toe[l], mean_direction(toes[l]).se};
-    *shoulder[l] = {whole.shoulder[l], mean_direction(shoulders[l]).se};
+    *toe[l] = with_error(whole.toe[l], toes[l]);
+    *shoulder[l] = with_error(whole.shoulder[l], shoulders[l]);
   }
   motion.ring_occupancy = sum;
   for (std::size_t i = 0; i < edges.size(); ++i) {
     motion.profile[i].toe_deg = edges[i].toe[kHalf];
     motion.profile[i].shoulder_deg = edges[i].shoulder[kHalf];
   }
-  motion.filling = mean_of_series(fillings);
+  const double in_picture = charge_shape(cv::Mat::ones(shares[0].size(), CV_32F), view.mill).area /
+                            (kPi * view.mill.radius * view.mill.radius);
+  if (in_picture > kWhole)
+    motion.filling = mean_of_series(fillings);
+  else
+    motion.caveats.push_back(fmt::format("only {:.0f} % of the mill lie in the picture: no filling", 100 * in_picture));
   if (std::isnan(view.metres_per_pixel)) forget_lengths(motion);
   report(progress, 1.0);
   return motion;

@@ -31,6 +31,26 @@ double row_mean(const cv::Mat& polar, int row, int from, int to) {
   return cv::mean(polar.row(row).colRange(from, std::max(from + 1, to)))[0];
 }
 
+// Where a pattern of this power begins: the radius that best parts powers without it from those with it, by magnitude
+// (least squares of the logarithm). No share of the strongest would do: between the lifters' tips and the shell's edge
+// the pattern is weaker than at both.
+double begins_at(const std::vector<double>& power, int inner) {
+  const auto magnitude = [&](int r) { return std::log1p(power[static_cast<std::size_t>(r)]); };  // from a grey level on
+  const int n = static_cast<int>(power.size());
+  double all = 0, within = 0, best = 0;
+  for (int r = inner; r < n; ++r) all += magnitude(r);
+  int at = inner;
+  for (int r = inner; r + 1 < n; ++r) {
+    within += magnitude(r);
+    const double left = r + 1 - inner, right = n - r - 1, step = (all - within) / right - within / left;
+    const double parted = step * step * left * right;
+    if (step <= 0 || parted <= best) continue;
+    best = parted;
+    at = r + 1;
+  }
+  return at - 0.5;
+}
+
 }  // namespace
 
 double charge_reach(const std::vector<cv::Mat>& shares, const Circle& centre) {
@@ -67,9 +87,13 @@ StillLifters find_still_lifters(const std::vector<cv::Mat>& pictures, const std:
     cv::cvtColor(pictures[i], grey, cv::COLOR_BGR2GRAY);
     grey.convertTo(grey, CV_32F);
     const cv::Mat polar = unroll(grey, mill, outer + 1), charge = unroll(shares[i], mill, outer + 1);
-    std::vector<int> free;  // directions without charge
-    for (int k = 0; k < kAngles; ++k)
-      if (row_mean(charge, k, wide, outer) < 0.05) free.push_back(k);
+    const cv::Rect2d seen_whole(0, 0, grey.cols - 1, grey.rows - 1);
+    std::vector<int> free;  // directions without charge, in the picture
+    for (int k = 0; k < kAngles; ++k) {
+      const double a = 2 * kPi * (k + 0.5) / kAngles;
+      const cv::Point2d end(mill.u + outer * std::cos(a), mill.v - outer * std::sin(a));
+      if (seen_whole.contains(end) && row_mean(charge, k, wide, outer) < 0.05) free.push_back(k);
+    }
     if (static_cast<int>(free.size()) < kAngles / 4) continue;
     ++used;
     for (int r = inner; r <= outer; ++r) {
@@ -113,11 +137,7 @@ StillLifters find_still_lifters(const std::vector<cv::Mat>& pictures, const std:
     best = total.begin() + (order / 2 - kLeast);
   lifters.count = known_count > 0 ? known_count : kLeast + static_cast<int>(best - total.begin());
   if (lifters.count < kLeast || lifters.count > kMost) return lifters;
-  const auto& p = power[static_cast<std::size_t>(lifters.count)];
-  const auto strongest = std::max_element(p.begin() + wide, p.end());
-  auto at = strongest;
-  while (at > p.begin() + inner && *at > 0.25 * *strongest) --at;  // half the amplitude
-  lifters.tip_radius = static_cast<double>(at - p.begin()) + 0.5;
+  lifters.tip_radius = begins_at(power[static_cast<std::size_t>(lifters.count)], inner);
   return lifters;
 }
 

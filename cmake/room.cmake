@@ -11,12 +11,22 @@ if(TUMBLE_WARNINGS_AS_ERRORS)
   target_compile_options(tumble_options INTERFACE -Werror)
 endif()
 
-# add_room(name SOURCES ... USES rooms that its headers show ... LIBRARIES its own third-party doors ...)
+# The headers that most sources of a target read, parsed once. Never together with a compiler cache: what gcc precompiles differs
+# from build to build, so that nothing would be found in the cache again.
+option(TUMBLE_PRECOMPILED "Precompile heavy headers, unless a compiler cache is used" OFF)
+function(precompile target)
+  if(TUMBLE_PRECOMPILED AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
+    target_precompile_headers(${target} PRIVATE <algorithm> <cmath> <filesystem> <functional> <map> <random> <string> <vector> ${ARGN})
+  endif()
+endfunction()
+
+# add_room(name SOURCES ... USES rooms that its headers show ... LIBRARIES its own third-party doors ... PRECOMPILED their heavy headers ...)
 function(add_room name)
-  cmake_parse_arguments(ROOM "" "" "SOURCES;USES;LIBRARIES" ${ARGN})
+  cmake_parse_arguments(ROOM "" "" "SOURCES;USES;LIBRARIES;PRECOMPILED" ${ARGN})
   add_library(tumble_${name} STATIC ${ROOM_SOURCES})
   list(TRANSFORM ROOM_USES PREPEND tumble_)
   target_link_libraries(tumble_${name} PUBLIC tumble_options ${ROOM_USES} PRIVATE ${ROOM_LIBRARIES})
+  precompile(tumble_${name} ${ROOM_PRECOMPILED})
 
   # Every header compiles alone: `cmake --build build/release --target check_headers` gives each a source file.
   file(GLOB_RECURSE headers RELATIVE ${PROJECT_SOURCE_DIR} CONFIGURE_DEPENDS *.h)

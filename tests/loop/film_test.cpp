@@ -104,6 +104,11 @@ std::vector<Case> all_cases() {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, FilmedMill, testing::ValuesIn(all_cases()), name);
+// What every change must pass: the fastest film, clockwise, and the slowest with the shallowest lifters.
+INSTANTIATE_TEST_SUITE_P(Hard, FilmedMill,
+                         testing::Values(Case{0.9, LifterProfile::kRectangle, true},
+                                         Case{0.5, LifterProfile::kTriangle, false}),
+                         name);
 
 // At 200 frames/s, ball by ball against the simulation's positions.
 class FastFilm : public testing::TestWithParam<Case> {};
@@ -158,6 +163,10 @@ INSTANTIATE_TEST_SUITE_P(
                     Case{0.7, LifterProfile::kRectangle, false}, Case{0.7, LifterProfile::kTriangle, true},
                     Case{0.9, LifterProfile::kRectangle, true}, Case{0.9, LifterProfile::kTriangle, false}),
     name);
+INSTANTIATE_TEST_SUITE_P(Hard, FastFilm,
+                         testing::Values(Case{0.7, LifterProfile::kRectangle, true},
+                                         Case{0.9, LifterProfile::kTriangle, false}),
+                         name);
 
 }  // namespace
 }  // namespace tumble
