@@ -178,6 +178,17 @@ BallPlane measure_ball_plane(const std::vector<SeenFrame>& frames, double mill_r
   return plane;
 }
 
+DepthDoubt depth_doubt(bool one_layer, double length, double radius, double distance, double focal_error) {
+  // Balls lie anywhere between both ends of a shallow mill; in deep ones those that nothing hides, within the first layer.
+  const double slack = !one_layer ? 2 * radius : length > 2 * radius ? length - 2 * radius : 0.0;
+  const double behind = 0.5 * slack / distance;
+  DepthDoubt doubt;
+  doubt.factor = 1 - behind;
+  doubt.place_error = behind * std::hypot(1 / std::sqrt(3.0), focal_error);
+  doubt.glass_error = (behind + radius / distance) * focal_error;
+  return doubt;
+}
+
 void drop_beyond(std::vector<SeenFrame>& frames, double mill_radius) {
   constexpr double kSlack = 0.2;  // of the radius
   for (SeenFrame& f : frames)

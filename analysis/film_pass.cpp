@@ -50,7 +50,9 @@ std::vector<FilmFrame> look_through(const std::string& path, const DrumView& dru
     while (pictures.size() < workers * kEach && (more = film.next(picture))) {
       FilmFrame frame;
       if (drum.reader != nullptr) {
-        frame.drum = (*drum.reader)(picture, expected);
+        // The first ones have been followed to and fro already.
+        frame.drum = frames.size() < drum.angles.size() ? drum.angles[frames.size()]
+                                                        : (*drum.reader)(picture, expected, drum.turn_per_frame.value);
         expected = frame.drum.angle + drum.turn_per_frame.value;
       }
       if (!before.empty()) frame.difference = picture_difference(before, picture, bound.u, bound.v, bound.radius);

@@ -12,6 +12,7 @@
 #include "analysis/film_pass.h"
 #include "analysis/film_reader.h"
 #include "analysis/frame_clock.h"
+#include "analysis/shared_errors.h"
 #include "analysis/time_base.h"
 #include "analysis/tracking.h"
 #include "analysis/view.h"
@@ -26,7 +27,8 @@ namespace {
 constexpr double kLeastScore = 0.2;      // of a ball: looked at at all
 constexpr double kCalibrateShare = 0.2;  // of the work, for the progress
 constexpr double kPassShare = 0.95;
-constexpr double kWorstRoll = 1.5;  // standard error beyond which a camera's roll is not believed [degrees]
+constexpr double kWorstRoll = 1.5;    // standard error beyond which a camera's roll is not believed [degrees]
+constexpr double kUnknownRoll = 1.5;  // of a camera that was levelled by eye, standard [degrees]
 
 // Where the mill is in the pictures, and in which unit its lengths are.
 struct Scene {
@@ -285,14 +287,24 @@ ChargeMotion measure_film(const std::string& path, const FilmOptions& options, c
   std::vector<SeenFrame> places = places_of(film, clock, scene, false);
   BallPlane plane = measure_ball_plane(places, scene.radius, scale);
   std::vector<SeenFrame> afar = places_of(film, clock, scene, true);
-  if (const BallPlane far_plane = measure_ball_plane(afar, scene.radius, scale); drawn_from_afar(plane, far_plane)) {
+  const BallPlane far_plane = measure_ball_plane(afar, scene.radius, scale);
+  const bool drawn = drawn_from_afar(plane, far_plane);
+  if (drawn) {
     places = std::move(afar);
     plane = far_plane;
   }
+  const bool one_layer = in_one_layer(places);
+  DepthDoubt depth;
+  if (!drawn) {
+    double usual = 0;
+    for (double r : scene.radii) usual += r / static_cast<double>(scene.radii.size());
+    depth = depth_doubt(one_layer, known.mill.length / scene.metres, usual, scene.drum.camera.translation.z(),
+                        scene.drum.focal.se / scene.drum.focal.value);
+  }
+  plane.factor = {plane.factor.value * depth.factor, std::hypot(plane.factor.se, depth.place_error)};
   settle_lengths(places, scene, plane, sizes, motion.caveats);
   drop_beyond(places, scene.radius);
-  drop_impossible(places,
-                  std::isnan(known.mill.length) && in_one_layer(places) ? 0.0 : known.mill.length / scene.metres);
+  drop_impossible(places, std::isnan(known.mill.length) && one_layer ? 0.0 : known.mill.length / scene.metres);
 
   // Repeats are not linked: each takes over what the frame before it shows.
   std::vector<SeenFrame> frames;
@@ -324,6 +336,7 @@ ChargeMotion measure_film(const std::string& path, const FilmOptions& options, c
   motion.caveats.insert(motion.caveats.end(), base.caveats.begin(), base.caveats.end());
   const double fps = base.frames_per_second.value;
   motion.frames_per_second = fps;
+  motion.frames_per_second_se = base.frames_per_second.se;
   motion.camera.roll_deg = fall.roll_deg;
   double roll_deg = fall.roll_deg.value;
   if (!(fall.roll_deg.se < kWorstRoll)) {
@@ -350,6 +363,11 @@ ChargeMotion measure_film(const std::string& path, const FilmOptions& options, c
   motion.camera.centre_v_px = middle.y;
   motion.camera.radius_px = scene.radius * scene.pixels_per_unit;
   motion.camera.metres_per_pixel = scene.metres / scene.pixels_per_unit;
+  motion.camera.centre_u_px_se = scene.drum.centre_u.se;
+  motion.camera.centre_v_px_se = scene.drum.centre_v.se;
+  const double glass_error = std::hypot(plane.factor.se, depth.glass_error);
+  motion.camera.radius_px_se = motion.camera.radius_px * glass_error;
+  motion.camera.metres_per_pixel_se = motion.camera.metres_per_pixel * glass_error;
   motion.camera.width_px = scene.drum.camera.width;
   motion.camera.height_px = scene.drum.camera.height;
   motion.mill_radius = scene.radius * scene.metres;
@@ -370,14 +388,20 @@ ChargeMotion measure_film(const std::string& path, const FilmOptions& options, c
   MillGeometry geometry;
   geometry.radius = scene.radius * unit;
   geometry.tip_radius = scene.tip_radius * unit;
-  double diameters = 0, count = 0;
+  double diameters = 0, count = 0, seen_area = 0, bridged_area = 0;
   std::vector<double> fillings;
-  for (const SeenFrame& f : frames) {
+  const std::vector<SeenFrame> bridged = bridged_sightings(frames);
+  for (std::size_t f = 0; f < frames.size(); ++f) {
     double area = 0;
-    for (const Sighting& s : f.balls) {
+    for (const Sighting& s : frames[f].balls) {
       if (!is_told(s)) continue;
       diameters += 2 * s.radius * unit;
       count += 1;
+      area += s.radius * s.radius;
+    }
+    seen_area += area;
+    for (const Sighting& s : bridged[f].balls) {
+      bridged_area += s.radius * s.radius;
       area += s.radius * s.radius;
     }
     fillings.push_back(area / (kSettledAreaShare * scene.radius * scene.radius));
@@ -385,6 +409,8 @@ ChargeMotion measure_film(const std::string& path, const FilmOptions& options, c
   if (count == 0)
     throw InputError(path, "shows no balls; balls of at least 3 pixels' radius were expected in the mill");
   motion.filling = mean_of_series(fillings);
+  // Balls that no path bridges are missed about as often as those that one does.
+  motion.filling.se = std::hypot(motion.filling.se, motion.filling.value * bridged_area / seen_area);
   geometry.mean_diameter = diameters / count;
   const int passages = motion.lifter_count > 0 ? motion.lifter_count : kUsualLifters;
   if (turn.value != 0) geometry.passage_frames = 2 * kPi / passages / std::abs(turn.value);
@@ -392,13 +418,20 @@ ChargeMotion measure_film(const std::string& path, const FilmOptions& options, c
 
   const std::vector<bool> hidden = hidden_bins(scene.drum.hidden_share, roll_deg, clockwise);
   ChargeStatistics statistics(geometry);
+  std::vector<std::vector<TrackPoint>> unseen;
   for (std::size_t f = 0; f < film.size(); ++f) {
     const std::vector<TrackPoint> balls = points_of(frames[row_of[f]], static_cast<int>(f), unit, rate);
+    unseen.push_back(points_of(bridged[row_of[f]], static_cast<int>(f), unit, rate));
     const double lifter = std::isnan(scene.drum.lifter_angle) ? 0.0 : scene.drum.lifter_angle;  // stands at the angle
     const double as_seen = degrees(lifter + film[f].drum.angle) - roll_deg;
-    statistics.add(static_cast<int>(f), clock.source[f] / rate, clockwise ? 180 - as_seen : as_seen, balls, hidden);
+    statistics.add(static_cast<int>(f), clock.source[f] / rate, clockwise ? 180 - as_seen : as_seen, balls, hidden,
+                   unseen.back());
   }
   statistics.finish(motion);
+  if (!one_layer) motion.filling = filling_of_deep_mill(motion.field, geometry.radius);
+  add_shared_errors(motion, geometry, hidden, unseen,
+                    {scene.drum.place_error / std::sqrt(2.0) * unit, plane.factor.se,
+                     radians(fall.roll_deg.se < kWorstRoll ? fall.roll_deg.se : kUnknownRoll)});
   if (options.overlay || options.sheet) {
     const FilmFindings findings =
         findings_of(scene, film, frames, row_of, radians(roll_deg), clockwise, motion.lifter_count);

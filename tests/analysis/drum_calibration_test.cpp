@@ -135,7 +135,7 @@ TEST(DrumCalibration, AFurtherPictureHasItsAngle) {
   const auto& [film, view] = oblique();
   DrumPainter painter(film.drum);  // the same drum, its balls elsewhere
   const double zero = view.angles[0].angle - film.angles[0], angle = film.angles.back() + 40 * film.drum.step;
-  const DrumAngle found = (*view.reader)(painter.paint(angle), angle + zero + 0.03);
+  const DrumAngle found = (*view.reader)(painter.paint(angle), angle + zero + 0.03, 0.03);
   EXPECT_NEAR(found.angle, angle + zero, 0.1 * kPi / 180);
   EXPECT_LT(found.error, 0.1 * kPi / 180);
 }

@@ -48,20 +48,24 @@ std::vector<TrackPoint> cataract(double leave_deg, double omega, double fps, dou
   return track;
 }
 
-class Flights : public ::testing::TestWithParam<double> {};  // frames per second
+struct Filming {
+  double fps, noise;  // [m]: 0.2, and 1 px of a usual film
+};
+class Flights : public ::testing::TestWithParam<Filming> {};
 
 TEST_P(Flights, StartWhereTheBallLeavesTheShellAndEndWhereItLands) {
   double land = 0;
-  const auto track = cataract(50, 4.2, GetParam(), 2e-4, land);  // 0.2 px of a usual film
+  const auto track = cataract(50, 4.2, GetParam().fps, GetParam().noise, land);
   const auto flights = find_flights(track, kGravity);
   ASSERT_EQ(flights.size(), 1u);
   const FlightAngles angles = flight_angles(flights, 0.2, 0.1);
-  const double frame = degrees(4.2 / GetParam());              // the ball's turn in a frame
+  const double frame = degrees(4.2 / GetParam().fps);              // the ball's turn in a frame
   EXPECT_NEAR(angles.departure_deg.value, 50, 3 * frame + 3);  // it hugs the circle at first
   EXPECT_NEAR(wrap_180(angles.impact_toe_deg.value - land), 0, 3 * frame);
 }
 
-INSTANTIATE_TEST_SUITE_P(Rates, Flights, ::testing::Values(60.0, 200.0));
+INSTANTIATE_TEST_SUITE_P(Rates, Flights,
+                         ::testing::Values(Filming{60, 2e-4}, Filming{200, 2e-4}, Filming{100, 1.5e-3}, Filming{200, 1.5e-3}));
 
 TEST(Flights, AreNotSeenInACarriedCharge) {
   std::vector<TrackPoint> track;
