@@ -191,6 +191,18 @@ Estimate median_direction(const std::vector<double>& directions) {
   return e;
 }
 
+// The longer a flight, the more likely that it is lost on the way: by how much the median would move if those that were
+// had landed farther round than half of the others.
+double shift_by_lost(const std::vector<double>& directions, std::size_t lost) {
+  if (directions.empty()) return 0;
+  const double median = median_direction(directions).value;
+  std::vector<double> beyond;
+  for (const double d : directions) beyond.push_back(wrap_180(d - median));
+  std::sort(beyond.begin(), beyond.end());
+  const std::size_t n = beyond.size();
+  return beyond[std::min(n - 1, (n + lost) / 2)] - beyond[n / 2];
+}
+
 }  // namespace
 
 std::vector<Flight> find_flights(std::span<const TrackPoint> tracks, double g) {
@@ -211,13 +223,17 @@ std::vector<Flight> find_flights(std::span<const TrackPoint> tracks, double g) {
 
 FlightAngles flight_angles(std::span<const Flight> flights, double shell_reach, double least_length) {
   std::vector<double> departures, impacts;
+  std::size_t lost = 0;  // in flight: where they end was not seen
   for (const Flight& f : flights) {
     if (!f.whole_start || std::hypot(f.start_x, f.start_y) < shell_reach) continue;
+    lost += !f.whole_end;
     if (std::hypot(f.end_x - f.start_x, f.end_y - f.start_y) < least_length) continue;
     departures.push_back(wrap_360(degrees(std::atan2(f.start_y, f.start_x))));
     if (f.whole_end) impacts.push_back(wrap_360(degrees(std::atan2(f.end_y, f.end_x))));
   }
-  return {median_direction(departures), median_direction(impacts)};
+  FlightAngles angles{median_direction(departures), median_direction(impacts)};
+  angles.impact_toe_deg.se = std::hypot(angles.impact_toe_deg.se, shift_by_lost(impacts, lost));
+  return angles;
 }
 
 }  // namespace tumble::analysis

@@ -28,7 +28,7 @@ constexpr double kLeastScore = 0.2;      // of a ball: looked at at all
 constexpr double kCalibrateShare = 0.2;  // of the work, for the progress
 constexpr double kPassShare = 0.95;
 constexpr double kWorstRoll = 1.5;    // standard error beyond which a camera's roll is not believed [degrees]
-constexpr double kUnknownRoll = 1.5;  // of a camera that was levelled by eye, standard [degrees]
+constexpr double kUnknownRoll = 2.0;  // of a camera that was levelled by eye, standard [degrees]
 
 // Where the mill is in the pictures, and in which unit its lengths are.
 struct Scene {
@@ -325,9 +325,12 @@ ChargeMotion measure_film(const std::string& path, const FilmOptions& options, c
   MotionModel model;
   model.turn = turn.value;
   link_sightings(frames, model);
-  const FreeFall fall = fall_of(frames, scene);
+  FreeFall fall = fall_of(frames, scene);
+  // Seen from the side, a tilt that is wrong along one axis leans the other.
+  fall.roll_deg.se = std::hypot(fall.roll_deg.se, degrees(scene.drum.obliqueness.value * scene.drum.obliqueness.se));
   TimeWitnesses witnesses;
   witnesses.told_rate = options.recorded_fps;
+  witnesses.scale_error = std::max(0.01, plane.factor.se);
   witnesses.file_rate = reader.frames_per_second();
   if (!std::isnan(scene.metres)) witnesses.falling_rate = frames_per_second(fall, kGravity / scene.metres);
   witnesses.turn_per_frame = {std::abs(turn.value), turn.se};

@@ -67,6 +67,19 @@ TEST_P(Flights, StartWhereTheBallLeavesTheShellAndEndWhereItLands) {
 INSTANTIATE_TEST_SUITE_P(Rates, Flights,
                          ::testing::Values(Filming{60, 2e-4}, Filming{200, 2e-4}, Filming{100, 1.5e-3}, Filming{200, 1.5e-3}));
 
+TEST(Flights, LostOnTheWayAreAnErrorOfTheImpact) {
+  std::vector<Flight> flights;
+  for (int i = 0; i < 20; ++i) {
+    const double end = radians(180 + 2 * i);
+    flights.push_back({i, 0, 0.3, 0.2, 0.1, 0.25 * std::cos(end), 0.25 * std::sin(end), true, true});
+  }
+  const FlightAngles all_seen = flight_angles(flights, 0.2, 0.1);
+  for (int i = 0; i < 10; ++i) flights.push_back({20 + i, 0, 0.1, 0.2, 0.1, 0.1, 0.2, true, false});
+  const FlightAngles some_lost = flight_angles(flights, 0.2, 0.05);
+  EXPECT_EQ(some_lost.impact_toe_deg.value, all_seen.impact_toe_deg.value);
+  EXPECT_NEAR(some_lost.impact_toe_deg.se, std::hypot(all_seen.impact_toe_deg.se, 10), 0.5);
+}
+
 TEST(Flights, AreNotSeenInACarriedCharge) {
   std::vector<TrackPoint> track;
   for (int f = 0; f < 300; ++f) {
