@@ -183,8 +183,7 @@ DepthDoubt depth_doubt(bool one_layer, double length, double radius, double dist
   const double slack = !one_layer ? 2 * radius : length > 2 * radius ? length - 2 * radius : 0.0;
   const double behind = 0.5 * slack / distance;
   DepthDoubt doubt;
-  doubt.factor = 1 - behind;
-  doubt.place_error = behind * std::hypot(1 / std::sqrt(3.0), focal_error);
+  doubt.place_error = behind * std::hypot(2 / std::sqrt(3.0), focal_error);  // of 0 to twice that, all alike
   doubt.glass_error = (behind + radius / distance) * focal_error;
   return doubt;
 }

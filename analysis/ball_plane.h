@@ -26,9 +26,7 @@ BallPlane measure_ball_plane(const std::vector<SeenFrame>& frames, double mill_r
 
 // What the unknown depth of the balls behind the glass does to lengths.
 struct DepthDoubt {
-  double factor = 1;       // by which places that agree with the balls' own lengths are to be multiplied, to be as for
-                           // balls that touch the glass
-  double place_error = 0;  // relative standard error of such places by it
+  double place_error = 0;  // relative standard error of places, as for balls that touch the glass, by it
   double glass_error = 0;  // and of the scale in the plane of the glass
 };
 

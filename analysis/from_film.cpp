@@ -128,6 +128,27 @@ void multiply_lengths(std::vector<SeenFrame>& frames, Scene& scene, double facto
   scene.pixels_per_unit /= factor;
 }
 
+// By how much touching balls and those against the shell contradict each other.
+double contradiction(const BallPlane& plane) { return std::abs(plane.touching.value / plane.reach.value - 1); }
+
+// What was taken for the shell may be another circle. Where mill and balls are known and the balls' touching contradicts
+// it, its scale is tried without it: if they then stop at the shell, two witnesses outvote one.
+void doubt_shell(const std::vector<FilmFrame>& film, const FrameClock& clock, Scene& scene,
+                 std::vector<SeenFrame>& places, BallPlane& plane) {
+  constexpr double kClear = 0.03, kAgreement = 0.012;
+  constexpr double kRough = 0.02;  // of a scale by touching balls
+  if (!(std::abs(plane.touching.value - 1) > kClear) || contradiction(plane) < kClear) return;
+  Scene other = scene;
+  std::vector<SeenFrame> none;
+  multiply_lengths(none, other, 1 / plane.touching.value);
+  std::vector<SeenFrame> seen = places_of(film, clock, other, false);
+  const BallPlane by_balls = measure_ball_plane(seen, other.radius, {1.0, kRough});
+  if (!(contradiction(by_balls) < kAgreement)) return;
+  scene = std::move(other);
+  places = std::move(seen);
+  plane = by_balls;
+}
+
 // Lengths by the balls: where mill and balls are both known, they better the camera's scale; where one is missing, the
 // balls' touching gives their size in the unit of the other.
 void settle_lengths(std::vector<SeenFrame>& frames, Scene& scene, const BallPlane& plane,
@@ -244,6 +265,19 @@ ChargeMotion measure_film(const std::string& path, const FilmOptions& options, c
   if (known.mill.diameter > 0) scales = {0.88 * scene.pixels_per_unit, 1.08 * scene.pixels_per_unit};
   const std::vector<cv::Mat> sample = sample_pictures(path);
   BallLook look = learn_look(eyes.net, sample, scene.bound, sizes, scales);
+  if (known.mill.diameter > 0 && !sizes.empty()) {
+    // What was taken for the shell may be another circle: balls that are seen to be of quite another size tell.
+    constexpr double kWidest = 1.7, kClearly = 1.2, kRough = 0.03;
+    const double wide = scene.pixels_per_unit;
+    const BallLook other = learn_look(eyes.net, sample, scene.bound, sizes, {wide / kWidest, wide * kWidest});
+    if (!other.radii.empty() && other.explained > kClearly * look.explained) {
+      std::vector<SeenFrame> unplaced;
+      multiply_lengths(unplaced, scene, scene.pixels_per_unit * sizes.front() / other.radii.front());
+      scene.drum.scale.se = kRough;
+      scene.bound.radius *= scene.pixels_per_unit / wide;
+      look = other;
+    }
+  }
   if (look.radii.empty())
     throw InputError(path, "shows no balls; balls of at least 3 pixels' radius were expected in the mill");
   learn_rims(eyes, sample, scene.bound, look);
@@ -286,6 +320,7 @@ ChargeMotion measure_film(const std::string& path, const FilmOptions& options, c
   const Estimate scale{1.0, scene.drum.scale.se};
   std::vector<SeenFrame> places = places_of(film, clock, scene, false);
   BallPlane plane = measure_ball_plane(places, scene.radius, scale);
+  if (sizes.size() == scene.radii.size() && !std::isnan(scene.metres)) doubt_shell(film, clock, scene, places, plane);
   std::vector<SeenFrame> afar = places_of(film, clock, scene, true);
   const BallPlane far_plane = measure_ball_plane(afar, scene.radius, scale);
   const bool drawn = drawn_from_afar(plane, far_plane);
@@ -301,7 +336,7 @@ ChargeMotion measure_film(const std::string& path, const FilmOptions& options, c
     depth = depth_doubt(one_layer, known.mill.length / scene.metres, usual, scene.drum.camera.translation.z(),
                         scene.drum.focal.se / scene.drum.focal.value);
   }
-  plane.factor = {plane.factor.value * depth.factor, std::hypot(plane.factor.se, depth.place_error)};
+  plane.factor.se = std::hypot(plane.factor.se, depth.place_error);
   settle_lengths(places, scene, plane, sizes, motion.caveats);
   drop_beyond(places, scene.radius);
   drop_impossible(places, std::isnan(known.mill.length) && one_layer ? 0.0 : known.mill.length / scene.metres);

@@ -147,7 +147,8 @@ def truth_of(stem):
     shake = np.array(t.get('shake_px', [[0, 0]])).mean(0)
     q = {'speed_rpm': t['rpm'], 'frames_per_second': t['fps_recorded'], 'mill_centre_u_px': cam['mill_centre_px'][0] + shake[0],
          'mill_centre_v_px': cam['mill_centre_px'][1] + shake[1], 'mill_radius_px': cam['mill_radius_px'],
-         'metres_per_pixel': R / cam['mill_radius_px'], 'filling': mill['filling']}
+         'metres_per_pixel': R / cam['mill_radius_px'],
+         'filling': np.sum(np.square(t['balls']['radius_m'])) / (0.82 * R**2 * mill['layers'])}
     m = np.array(cam['camera_from_mill'])
     def pixel(p):
         c = m @ (np.array(p) - eye)

@@ -60,7 +60,8 @@ TEST_P(Flights, StartWhereTheBallLeavesTheShellAndEndWhereItLands) {
   ASSERT_EQ(flights.size(), 1u);
   const FlightAngles angles = flight_angles(flights, 0.2, 0.1);
   const double frame = degrees(4.2 / GetParam().fps);              // the ball's turn in a frame
-  EXPECT_NEAR(angles.departure_deg.value, 50, 3 * frame + 3);  // it hugs the circle at first
+  // It hugs the circle at first, the longer the more places are blurred.
+  EXPECT_NEAR(angles.departure_deg.value, 50, 3 * frame + 3 + 3e3 * GetParam().noise);
   EXPECT_NEAR(wrap_180(angles.impact_toe_deg.value - land), 0, 3 * frame);
 }
 
