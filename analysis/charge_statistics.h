@@ -27,8 +27,8 @@ class ChargeStatistics {
  public:
   explicit ChargeStatistics(const MillGeometry& geometry);
 
-  // One frame's balls. `hidden`: bins of the ring that could not be seen. `unseen`: balls that are there, but are not to
-  // be told of.
+  // One frame's balls. `hidden`: bins of the ring that could not be seen. `unseen`: balls that are there, but are not
+  // to be told of.
   void add(int frame, double time, double mill_angle_deg, std::span<const TrackPoint> balls,
            const std::vector<bool>& hidden = {}, std::span<const TrackPoint> unseen = {});
 

@@ -9,14 +9,14 @@
 namespace tumble::analysis {
 namespace {
 
-constexpr int kGroup = 6;            // rows taken together
-constexpr int kTogether = 3;         // bands that are followed by themselves at first
-constexpr int kLeastOrder = 2;       // light that changes is of the lowest orders
-constexpr double kGreyNoise = 0.5;   // of a group's mean [grey levels]: bands in which nothing moves have no say
-constexpr std::size_t kTrial = 80;   // pictures that show which of several turns is the drum's
-constexpr double kStill = 0.03;      // turn during the trial below which nothing turns [rad]
-constexpr double kUnsteady = 0.08;   // of the turn from picture to picture, as a share
-constexpr double kNearEqual = 0.85;  // of the best match
+constexpr int kGroup = 6;              // rows taken together
+constexpr int kTogether = 3;           // bands that are followed by themselves at first
+constexpr int kLeastOrder = 2;         // light that changes is of the lowest orders
+constexpr double kGreyNoise = 0.5;     // of a group's mean [grey levels]: bands in which nothing moves have no say
+constexpr std::size_t kTrial = 80;     // pictures that show which of several turns is the drum's
+constexpr double kStill = 0.03;        // turn during the trial below which nothing turns [rad]
+constexpr double kUnsteady = 0.08;     // of the turn from picture to picture, as a share
+constexpr double kNearEqual = 0.85;    // of the best match
 constexpr double kBelievedNear = 0.5;  // of the best match anywhere: one within reach is believed
 
 struct Peak {

@@ -131,8 +131,8 @@ void multiply_lengths(std::vector<SeenFrame>& frames, Scene& scene, double facto
 // By how much touching balls and those against the shell contradict each other.
 double contradiction(const BallPlane& plane) { return std::abs(plane.touching.value / plane.reach.value - 1); }
 
-// What was taken for the shell may be another circle. Where mill and balls are known and the balls' touching contradicts
-// it, its scale is tried without it: if they then stop at the shell, two witnesses outvote one.
+// What was taken for the shell may be another circle. Where mill and balls are known and the balls' touching
+// contradicts it, its scale is tried without it: if they then stop at the shell, two witnesses outvote one.
 void doubt_shell(const std::vector<FilmFrame>& film, const FrameClock& clock, Scene& scene,
                  std::vector<SeenFrame>& places, BallPlane& plane) {
   constexpr double kClear = 0.03, kAgreement = 0.012;
@@ -462,8 +462,7 @@ ChargeMotion measure_film(const std::string& path, const FilmOptions& options, c
     unseen.push_back(points_of(bridged[row_of[f]], static_cast<int>(f), unit, rate));
     const double lifter = std::isnan(scene.drum.lifter_angle) ? 0.0 : scene.drum.lifter_angle;  // stands at the angle
     const double as_seen = degrees(lifter + film[f].drum.angle) - roll_deg;
-    statistics.add(static_cast<int>(f), clock.source[f] / rate, clockwise ? 180 - as_seen : as_seen, balls, hidden,
-                   unseen.back());
+    statistics.add(static_cast<int>(f), clock.source[f] / rate, clockwise ? 180 - as_seen : as_seen, balls, hidden);
   }
   statistics.finish(motion);
   if (!one_layer) motion.filling = filling_of_deep_mill(motion.field, geometry.radius);

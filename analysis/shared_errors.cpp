@@ -10,7 +10,7 @@ namespace {
 
 struct Displacement {
   double x = 0, y = 0, scale = 0, roll = 0;
-  bool with_unseen = true;
+  bool with_unseen = false;
 };
 
 struct Quantity {
@@ -73,12 +73,12 @@ void add_shared_errors(ChargeMotion& motion, const MillGeometry& geometry, const
     }
   };
   for (const double side : {-1.0, 1.0}) {
-    if (errors.axis > 0) add({side * errors.axis, 0, 0, 0, true}, 0.5);
-    if (errors.axis > 0) add({0, side * errors.axis, 0, 0, true}, 0.5);
-    if (errors.scale > 0) add({0, 0, side * errors.scale, 0, true}, 0.5);
-    if (errors.roll > 0) add({0, 0, 0, side * errors.roll, true}, 0.5);
+    if (errors.axis > 0) add({side * errors.axis, 0, 0, 0, false}, 0.5);
+    if (errors.axis > 0) add({0, side * errors.axis, 0, 0, false}, 0.5);
+    if (errors.scale > 0) add({0, 0, side * errors.scale, 0, false}, 0.5);
+    if (errors.roll > 0) add({0, 0, 0, side * errors.roll, false}, 0.5);
   }
-  if (!unseen.empty()) add({0, 0, 0, 0, false}, 1.0);
+  if (!unseen.empty()) add({0, 0, 0, 0, true}, 1.0);
   for (std::size_t i = 0; i < kQuantities.size(); ++i) {
     double& se = (motion.*kQuantities[i].of).se;
     se = std::hypot(se, std::sqrt(variance[i]));

@@ -14,8 +14,8 @@ struct SharedErrors {
 };
 
 // Adds these errors to those that `motion` has from scatter in time: everything is measured again from its tracks with
-// axis, scale and roll off by one standard error, to both sides. `geometry`, `hidden` and, by frame, `unseen` as they were
-// for the motion; what is not seen is in doubt, and is left out once.
+// axis, scale and roll off by one standard error, to both sides. `geometry`, `hidden` and, by frame, `unseen` as they
+// were for the motion; what paths bridge is added once.
 void add_shared_errors(ChargeMotion& motion, const MillGeometry& geometry, const std::vector<bool>& hidden,
                        const std::vector<std::vector<TrackPoint>>& unseen, const SharedErrors& errors);
 

@@ -100,7 +100,8 @@ TimeBase judge_time_base(const TimeWitnesses& w) {
     if (file && turns && !contradicts(w.file_rate, nominal) && std::abs(z_of(falling, nominal)) > kContradiction) {
       // Two against one: hops that never were free fall agree among themselves, file and dial not by chance.
       base.frames_per_second = {w.file_rate, 0.0};
-      say(fmt::format("balls in flight fall as at {} frames/s, but the file's {:.4g} and the {:.3g} rev/min that are "
+      say(
+          fmt::format("balls in flight fall as at {} frames/s, but the file's {:.4g} and the {:.3g} rev/min that are "
                       "given for the mill agree: the file is believed",
                       shown(falling), w.file_rate, w.nominal_rpm));
       return base;
@@ -136,7 +137,8 @@ TimeBase judge_time_base(const TimeWitnesses& w) {
       return base;
     }
     // Two witnesses that agree settle it; of two that do not, either may be right.
-    if (turns) base.frames_per_second.se = contradicts(w.file_rate, nominal) ? std::abs(w.file_rate - nominal.value) : 0;
+    if (turns)
+      base.frames_per_second.se = contradicts(w.file_rate, nominal) ? std::abs(w.file_rate - nominal.value) : 0;
     say(fmt::format("too few balls fly to check the file's {:.4g} frames/s", w.file_rate));
     check_speed(w.file_rate);
   } else if (turns) {

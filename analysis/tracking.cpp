@@ -181,8 +181,10 @@ std::vector<SeenFrame> bridged_sightings(const std::vector<SeenFrame>& frames) {
         const double to = share * (1 - share) * (1 - share) * span, from = -share * share * (1 - share) * span;
         Sighting b = a;
         b.time = a.time + share * span;
-        b.x = a.x + share * (s.x - a.x) + to * (or_chord(a.vx, chord_x) - chord_x) + from * (or_chord(s.vx, chord_x) - chord_x) ;
-        b.y = a.y + share * (s.y - a.y) + to * (or_chord(a.vy, chord_y) - chord_y) + from * (or_chord(s.vy, chord_y) - chord_y);
+        b.x = a.x + share * (s.x - a.x) + to * (or_chord(a.vx, chord_x) - chord_x) +
+              from * (or_chord(s.vx, chord_x) - chord_x);
+        b.y = a.y + share * (s.y - a.y) + to * (or_chord(a.vy, chord_y) - chord_y) +
+              from * (or_chord(s.vy, chord_y) - chord_y);
         b.vx = chord_x;
         b.vy = chord_y;
         bridged[k].balls.push_back(b);

@@ -59,14 +59,15 @@ TEST_P(Flights, StartWhereTheBallLeavesTheShellAndEndWhereItLands) {
   const auto flights = find_flights(track, kGravity);
   ASSERT_EQ(flights.size(), 1u);
   const FlightAngles angles = flight_angles(flights, 0.2, 0.1);
-  const double frame = degrees(4.2 / GetParam().fps);              // the ball's turn in a frame
+  const double frame = degrees(4.2 / GetParam().fps);  // the ball's turn in a frame
   // It hugs the circle at first, the longer the more places are blurred.
   EXPECT_NEAR(angles.departure_deg.value, 50, 3 * frame + 3 + 3e3 * GetParam().noise);
   EXPECT_NEAR(wrap_180(angles.impact_toe_deg.value - land), 0, 3 * frame);
 }
 
 INSTANTIATE_TEST_SUITE_P(Rates, Flights,
-                         ::testing::Values(Filming{60, 2e-4}, Filming{200, 2e-4}, Filming{100, 1.5e-3}, Filming{200, 1.5e-3}));
+                         ::testing::Values(Filming{60, 2e-4}, Filming{200, 2e-4}, Filming{100, 1.5e-3},
+                                           Filming{200, 1.5e-3}));
 
 TEST(Flights, LostOnTheWayAreAnErrorOfTheImpact) {
   std::vector<Flight> flights;

@@ -40,7 +40,7 @@ Bed a_bed(double unseen_share) {
         // What is not seen lies at the toe.
         (a < 225 && random.uniform() < unseen_share ? unseen : told).push_back(p);
       }
-    statistics.add(f, 0.01 * f, 0, told, {}, unseen);
+    statistics.add(f, 0.01 * f, 0, told);
     bed.told.push_back(told);
     bed.unseen.push_back(unseen);
   }

@@ -56,11 +56,10 @@ ChargeMotion a_motion(MotionSource source) {
 std::vector<std::uint64_t> numbers_of(const ChargeMotion& m) {
   std::vector<std::uint64_t> bits;
   const auto add = [&](double x) { bits.push_back(std::bit_cast<std::uint64_t>(x)); };
-  for (double x :
-       {m.mill_radius, m.tip_radius, m.frames_per_second, m.camera.centre_u_px, m.camera.centre_v_px,
-        m.camera.radius_px, m.camera.metres_per_pixel, m.camera.roll_deg.value, m.camera.roll_deg.se, m.field.cell,
-        m.frames_per_second_se, m.camera.centre_u_px_se, m.camera.centre_v_px_se, m.camera.radius_px_se,
-        m.camera.metres_per_pixel_se})
+  for (double x : {m.mill_radius, m.tip_radius, m.frames_per_second, m.camera.centre_u_px, m.camera.centre_v_px,
+                   m.camera.radius_px, m.camera.metres_per_pixel, m.camera.roll_deg.value, m.camera.roll_deg.se,
+                   m.field.cell, m.frames_per_second_se, m.camera.centre_u_px_se, m.camera.centre_v_px_se,
+                   m.camera.radius_px_se, m.camera.metres_per_pixel_se})
     add(x);
   for (const MotionQuantity& q : kMotionQuantities) add((m.*q.of).value), add((m.*q.of).se);
   for (double o : m.ring_occupancy) add(o);
