@@ -167,6 +167,7 @@ BallLook learn_look(BallNet& net, const std::vector<cv::Mat>& pictures, const Ci
     }
     if (seen.empty()) return {};
     look.radii = classes_of(seen, known, scales);
+    look.explained = explained(seen, look.radii);
     if (look.radii.empty()) return look;
     smallest = look.radii.front();
   }

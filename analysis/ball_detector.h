@@ -19,6 +19,7 @@ struct Detection {
 
 // How large the balls of this film are.
 struct BallLook {
+  double explained = 0;       // area of sure balls in the pictures learned from that are of these sizes [px^2]
   std::vector<double> radii;  // of the size classes [px], ascending; empty where no balls are seen
   std::vector<double> rims;   // of the edges of their outlines [px]; NaN where these are not sharp (ball_rim.h)
 };

@@ -163,19 +163,36 @@ BallPlane measure_ball_plane(const std::vector<SeenFrame>& frames, double mill_r
   BallPlane plane;
   plane.touching = sharp_edge(gaps, 0.85, 1.2, +1);
   find_circle(reaches, plane);
-  double weight = 0, sum = 0;
+  double weight = 0, sum = 0, squares = 0, witnesses = 0;
   const auto add = [&](const Estimate& e, double floor) {
     if (std::isnan(e.value)) return;
     const double w = 1 / (e.se * e.se + floor * floor);
     weight += w;
     sum += w * e.value;
+    squares += w * e.value * e.value;
+    witnesses += 1;
   };
   // What the two can be wrong by beyond their scatter: balls overlap a little, shells are not quite round.
   add({plane.touching.value, plane.touching.se}, 0.003);
   add({plane.reach.value, plane.reach.se}, 0.002);
   if (!std::isnan(prior.value)) add({1 / prior.value, prior.se}, 0.0);
-  if (weight > 0) plane.factor = {weight / sum, std::sqrt(1 / weight)};
+  if (weight > 0) {
+    // Witnesses that contradict each other know less than they say (Birge 1932).
+    const double chi2 = witnesses > 1 ? (squares - sum * sum / weight) / (witnesses - 1) : 1.0;
+    plane.factor = {weight / sum, std::sqrt(std::max(1.0, chi2) / weight)};
+  }
   return plane;
+}
+
+DepthDoubt depth_doubt(bool one_layer, double length, double radius, double distance, double focal_error) {
+  // Balls lie anywhere between both ends of a shallow mill; in deep ones those that nothing hides, within the first
+  // layer.
+  const double slack = !one_layer ? 2 * radius : length > 2 * radius ? length - 2 * radius : 0.0;
+  const double behind = 0.5 * slack / distance;
+  DepthDoubt doubt;
+  doubt.place_error = behind * std::hypot(2 / std::sqrt(3.0), focal_error);  // of 0 to twice that, all alike
+  doubt.glass_error = (behind + radius / distance) * focal_error;
+  return doubt;
 }
 
 void drop_beyond(SeenFrame& frame, double mill_radius) {

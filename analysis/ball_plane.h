@@ -24,6 +24,16 @@ struct BallPlane {
 // the factor, before the balls are asked.
 BallPlane measure_ball_plane(const std::vector<SeenFrame>& frames, double mill_radius, const Estimate& prior);
 
+// What the unknown depth of the balls behind the glass does to lengths.
+struct DepthDoubt {
+  double place_error = 0;  // relative standard error of places, as for balls that touch the glass, by it
+  double glass_error = 0;  // and of the scale in the plane of the glass
+};
+
+// `length`: of the mill, NaN where unknown; `radius`: of a ball, usually; `distance`: of the camera, all in one unit.
+// `focal_error`: relative; the distance is wrong by as much.
+DepthDoubt depth_doubt(bool one_layer, double length, double radius, double distance, double focal_error);
+
 // Drops what lies beyond the shell, such as bolts.
 void drop_beyond(SeenFrame& frame, double mill_radius);
 

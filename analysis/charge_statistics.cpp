@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/statistics.h"
+#include "core/units.h"
 
 namespace tumble::analysis {
 
@@ -18,6 +19,24 @@ double head_of(std::span<const TrackPoint> balls) {
   return y[low] + (at - static_cast<double>(low)) * (y[high] - y[low]);
 }
 
+Estimate filling_of_deep_mill(const Field& field, double mill_radius) {
+  constexpr double kError = 0.15;  // of slices simulated side by side
+  std::vector<double> dense;
+  double covered = 0, most = 0;
+  for (const double o : field.occupancy)
+    if (!std::isnan(o)) {
+      covered += o * field.cell * field.cell;
+      most = std::max(most, o);
+    }
+  for (const double o : field.occupancy)
+    if (o > 0.5 * most) dense.push_back(o);
+  if (dense.empty()) return {};
+  const auto at = dense.begin() + static_cast<std::ptrdiff_t>(0.9 * static_cast<double>(dense.size() - 1));
+  std::nth_element(dense.begin(), at, dense.end());
+  const double filling = covered / (*at * kPi * mill_radius * mill_radius);
+  return {filling, kError * filling};
+}
+
 ChargeStatistics::ChargeStatistics(const MillGeometry& geometry)
     : geometry_(geometry),
       ring_(edge_ring(geometry.tip_radius, geometry.mean_diameter)),
@@ -27,13 +46,14 @@ ChargeStatistics::ChargeStatistics(const MillGeometry& geometry)
 }
 
 void ChargeStatistics::add(int frame, double time, double mill_angle_deg, std::span<const TrackPoint> balls,
-                           const std::vector<bool>& hidden) {
+                           const std::vector<bool>& hidden, std::span<const TrackPoint> unseen) {
   std::vector<Disc> discs;
   std::vector<MovingDisc> moving;
-  for (const TrackPoint& b : balls) {
-    discs.push_back({b.x, b.y, b.radius});
-    moving.push_back({b.x, b.y, b.radius, b.vx, b.vy});
-  }
+  for (const auto& some : {balls, unseen})
+    for (const TrackPoint& b : some) {
+      discs.push_back({b.x, b.y, b.radius});
+      moving.push_back({b.x, b.y, b.radius, b.vx, b.vy});
+    }
   RingProfile profile = ring_occupancy(discs, ring_);
   for (std::size_t i = 0; i < hidden.size() && i < profile.size(); ++i)
     if (hidden[i]) profile[i] = kNotGiven;

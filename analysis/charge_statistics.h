@@ -28,9 +28,10 @@ class ChargeStatistics {
  public:
   explicit ChargeStatistics(const MillGeometry& geometry);
 
-  // One frame's balls. `hidden`: bins of the ring that could not be seen.
+  // One frame's balls. `hidden`: bins of the ring that could not be seen. `unseen`: balls that are there, but are not
+  // to be told of.
   void add(int frame, double time, double mill_angle_deg, std::span<const TrackPoint> balls,
-           const std::vector<bool>& hidden = {});
+           const std::vector<bool>& hidden = {}, std::span<const TrackPoint> unseen = {});
 
   // Fills toe, shoulder, head, centre of circulation, departure, impact, ring occupancy, profile, field and tracks.
   void finish(ChargeMotion& motion);
@@ -45,6 +46,10 @@ class ChargeStatistics {
   Spool<TrackPoint> tracks_;
   std::optional<FlightLog> flights_;  // none where length or clock is unknown
 };
+
+// Filling of a mill in which balls lie behind one another: what the charge covers, where it lies dense, is the mill's
+// whole cross-section; balls in flight cover more than they are, which the error knows.
+Estimate filling_of_deep_mill(const Field& field, double mill_radius);
 
 // 99th percentile, linear between order statistics; NaN of nothing.
 double head_of(std::span<const TrackPoint> balls);

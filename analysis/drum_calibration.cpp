@@ -36,6 +36,7 @@ constexpr double kRoughTurn = 0.02;   // by which first angles may be off [rad]
 constexpr double kCovered = 1.7;      // times by which a piece looks less like itself than usual where balls cover it
 constexpr double kEnough = 0.35;      // of the pieces of one band
 constexpr double kClearTwist = 3;     // standard errors from which a picture is read out line by line
+constexpr double kMarkHeight = 0.03;  // by which marks may lie before the inside of the glass, in shell radii
 constexpr double kNoTwist = 0.005;    // readout that is as good as none [frame periods]
 constexpr double kSameTilt = 0.05;    // between views that are one [rad]
 constexpr double kClearMisfit = 0.1;  // between views, of which one is clearly better
@@ -290,7 +291,10 @@ Camera fit_camera(const Sample& sample, const DrumPose& start, const PolarGrid& 
     DrumPose at_once = camera.fit.pose;
     at_once.numbers[DrumPose::kTwist] = 0;
     prior.deviation[DrumPose::kTwist] = kNoTwist * std::abs(turn.step);
+    // That it is none is supposed, not seen: the errors stay those of a readout that is free.
+    const auto covariance = camera.fit.covariance;
     camera.fit = fit_pose(last, at_once, camera.fit.angles, camera.fit.depths, prior);
+    camera.fit.covariance = covariance;
   }
   camera.found = true;
   return camera;
@@ -473,8 +477,12 @@ DrumView calibrate_drum(const NextPicture& next, double frames_per_second, const
     return sample.reduced * std::sqrt(std::max(0.0, camera.fit.covariance(p, p) + camera.fit.covariance(q, q) +
                                                         2 * camera.fit.covariance(p, q)));
   };
-  view.centre_u = {axis.x, sum_error(DrumPose::kOriginU, DrumPose::kCentreU)};
-  view.centre_v = {axis.y, sum_error(DrumPose::kOriginV, DrumPose::kCentreV)};
+  // Marks on a flange before the glass show the axis where it pierces their own plane.
+  const double height = kMarkHeight * unit * shell.radius;
+  const cv::Point2d ahead = picture_of(view.camera, {0, 0, height}) - axis;
+  view.centre_u = {axis.x, std::hypot(sum_error(DrumPose::kOriginU, DrumPose::kCentreU), ahead.x)};
+  view.centre_v = {axis.y, std::hypot(sum_error(DrumPose::kOriginV, DrumPose::kCentreV), ahead.y)};
+  view.place_error = std::hypot(view.place_error, height * std::tan(obliqueness(view.camera)));
   view.obliqueness = {obliqueness(view.camera), std::hypot(error(DrumPose::kTiltX), error(DrumPose::kTiltY))};
 
   const double tip = known.mill.lifters.height > 0 && mill_radius > 0

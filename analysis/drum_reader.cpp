@@ -32,9 +32,9 @@ DrumReader::DrumReader(const DrumPose& pose, const PolarGrid& grid, int reduced,
   pattern_ = RoundSpectrum(texture_->pattern());
 }
 
-DrumAngle DrumReader::operator()(const cv::Mat& bgr, double expected) const {
+DrumAngle DrumReader::operator()(const cv::Mat& bgr, double expected, double step) const {
   const cv::Mat moving = texture_->moving_part(unroll_(reduced_grey(bgr, reduced_)));
-  return refined(moving, angle_of(pattern_, RoundSpectrum(moving), expected));
+  return refined(moving, angle_of(pattern_, RoundSpectrum(moving), expected, step));
 }
 
 DrumAngle DrumReader::angle_near(const cv::Mat& strip, double expected, double reach) const {

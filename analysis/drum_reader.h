@@ -26,7 +26,8 @@ class DrumReader {
              const std::vector<double>& angles, double blur, int margin);
 
   // A picture of the film, as FilmReader hands it out; the angle next to `expected` where the texture repeats itself.
-  DrumAngle operator()(const cv::Mat& bgr, double expected) const;
+  // `step`: usual turn from picture to picture.
+  DrumAngle operator()(const cv::Mat& bgr, double expected, double step) const;
 
   // Within `reach` of an angle that is known roughly [rad].
   DrumAngle angle_near(const cv::Mat& strip, double expected, double reach) const;

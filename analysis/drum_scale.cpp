@@ -32,7 +32,10 @@ ShellGuess find_shell(const DrumReader& reader, const std::vector<RingEdgePoints
   const PolarGrid& grid = reader.unroll().grid();
   const MillCamera camera = reader.unroll().pose().camera();
   const cv::Mat &deviation = reader.still().deviation, &in_view = reader.unroll().in_view();
-  std::vector<double> radii;
+  struct End {
+    double radius, weight;
+  };
+  std::vector<End> ends;
   for (int sector = 0; sector < kSectors; ++sector) {
     const int first = sector * grid.columns / kSectors, last = (sector + 1) * grid.columns / kSectors;
     std::vector<double> charge;  // deviation of what does not turn with the drum, by row
@@ -60,11 +63,17 @@ ShellGuess find_shell(const DrumReader& reader, const std::vector<RingEdgePoints
     // Where a shell of that radius would be seen to end, in this direction.
     const double a = 0.5 * (first + last) * grid.pitch();
     const cv::Point2d edge = picture_of(camera, {seen * std::cos(a), seen * std::sin(a), -ball});
-    radii.push_back(seen * seen / std::min(seen, mill_place_at(camera, edge, 0).norm()));
+    // Light that plays on a flange changes less than a charge does.
+    ends.push_back({seen * seen / std::min(seen, mill_place_at(camera, edge, 0).norm()), most * most});
   }
-  if (radii.size() < kFewestSectors) return guess;
-  std::sort(radii.begin(), radii.end());
-  guess.radius = radii[radii.size() / 2];
+  if (ends.size() < kFewestSectors) return guess;
+  std::sort(ends.begin(), ends.end(), [](const End& a, const End& b) { return a.radius < b.radius; });
+  double half = 0;
+  for (const End& e : ends) half += 0.5 * e.weight;
+  for (const End& e : ends) {
+    guess.radius = e.radius;
+    if ((half -= e.weight) <= 0) break;
+  }
   guess.deviation = kEndError;
   const RingEdgePoints* nearest = nullptr;
   for (const RingEdgePoints& ring : rings) {

@@ -9,14 +9,15 @@
 namespace tumble::analysis {
 namespace {
 
-constexpr int kGroup = 6;            // rows taken together
-constexpr int kTogether = 3;         // bands that are followed by themselves at first
-constexpr int kLeastOrder = 2;       // light that changes is of the lowest orders
-constexpr double kGreyNoise = 0.5;   // of a group's mean [grey levels]: bands in which nothing moves have no say
-constexpr std::size_t kTrial = 80;   // pictures that show which of several turns is the drum's
-constexpr double kStill = 0.03;      // turn during the trial below which nothing turns [rad]
-constexpr double kUnsteady = 0.08;   // of the turn from picture to picture, as a share
-constexpr double kNearEqual = 0.85;  // of the best match
+constexpr int kGroup = 6;              // rows taken together
+constexpr int kTogether = 3;           // bands that are followed by themselves at first
+constexpr int kLeastOrder = 2;         // light that changes is of the lowest orders
+constexpr double kGreyNoise = 0.5;     // of a group's mean [grey levels]: bands in which nothing moves have no say
+constexpr std::size_t kTrial = 80;     // pictures that show which of several turns is the drum's
+constexpr double kStill = 0.03;        // turn during the trial below which nothing turns [rad]
+constexpr double kUnsteady = 0.08;     // of the turn from picture to picture, as a share
+constexpr double kNearEqual = 0.85;    // of the best match
+constexpr double kBelievedNear = 0.5;  // of the best match anywhere: one within reach is believed
 
 struct Peak {
   double shift = 0, height = -1;  // [columns], nearest to zero
@@ -257,16 +258,29 @@ DrumTurn follow_turn(std::vector<RoundSpectrum> pictures, double expected_step) 
   return turn;
 }
 
-double angle_of(const RoundSpectrum& pattern, const RoundSpectrum& picture, double expected) {
+double angle_of(const RoundSpectrum& pattern, const RoundSpectrum& picture, double expected, double step) {
   const auto match = pattern.match(picture);
   const double n = static_cast<double>(match.size()), pitch = 2 * kPi / n;
   const double most = *std::max_element(match.begin(), match.end());
+  // A drum does not jump: it has gone on as usual, not at all, or a few pictures are missing. Noise and what repeats
+  // round the drum match elsewhere too, and are believed only where nothing is found within reach.
+  const double back = 1.3 * std::abs(step) + 2 * pitch, on = 3.3 * std::abs(step) + 2 * pitch;
+  const auto miss_of = [&](const Peak& p) { return std::remainder(p.shift * pitch - expected, 2 * kPi); };
+  const auto within = [&](const Peak& p) {
+    const double along = step < 0 ? -miss_of(p) : miss_of(p);
+    return along > -back && along < on;
+  };
+  const auto peaks = peaks_of(match, 0.0);
+  double near_most = 0;
+  for (const Peak& p : peaks)
+    if (within(p)) near_most = std::max(near_most, p.height);
+  const bool near = near_most > kBelievedNear * most;
   double best = expected, nearest = 1e300;
-  for (const Peak& p : peaks_of(match, kNearEqual * most)) {
-    const double angle = expected + std::remainder(p.shift * pitch - expected, 2 * kPi);
-    if (std::abs(angle - expected) >= nearest) continue;
-    nearest = std::abs(angle - expected);
-    best = angle;
+  for (const Peak& p : peaks) {
+    if (near && !within(p)) continue;
+    if (p.height < kNearEqual * (near ? near_most : most) || std::abs(miss_of(p)) >= nearest) continue;
+    nearest = std::abs(miss_of(p));
+    best = expected + miss_of(p);
   }
   return best;
 }

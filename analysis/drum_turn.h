@@ -44,8 +44,9 @@ struct DrumTurn {
 // those of a drum with nothing but equal lifters do.
 DrumTurn follow_turn(std::vector<RoundSpectrum> pictures, double expected_step);
 
-// Angle of one picture against a pattern [rad]: the best match, of near equals the nearest to `expected`.
-double angle_of(const RoundSpectrum& pattern, const RoundSpectrum& picture, double expected);
+// Angle of one picture against a pattern [rad]: the best match about `expected`, of near equals the nearest to it;
+// elsewhere only where nothing is found there. `step`: usual turn from picture to picture.
+double angle_of(const RoundSpectrum& pattern, const RoundSpectrum& picture, double expected, double step);
 
 // The best match within `reach` of `expected` [rad].
 double angle_near(const RoundSpectrum& pattern, const RoundSpectrum& picture, double expected, double reach);

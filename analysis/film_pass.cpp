@@ -49,7 +49,9 @@ FilmPass look_through(const std::string& path, const DrumView& drum, const BallL
     while (pictures.size() < workers * kEach && (more = film.next(picture))) {
       DrumAngle angle;
       if (drum.reader != nullptr) {
-        angle = (*drum.reader)(picture, expected);
+        // The first ones have been followed to and fro already.
+        const std::size_t f = pass.drum.size();
+        angle = f < drum.angles.size() ? drum.angles[f] : (*drum.reader)(picture, expected, drum.turn_per_frame.value);
         expected = angle.angle + drum.turn_per_frame.value;
       }
       pass.drum.push_back(angle);

@@ -48,7 +48,7 @@ Chapters chapters_of(double turn) {
 
 void link_in_chapters(std::size_t frames, const PlacesOf& places, const Chapters& chapters, const MotionModel& model,
                       const std::function<void(std::vector<SeenFrame>&)>& finish,
-                      const std::function<void(std::size_t, const SeenFrame&)>& use) {
+                      const UseFrame& use) {
   TrackIds shared;  // of the frames that this chapter shares with the one before
   int next_number = 0;
   std::size_t used = 0;
@@ -70,9 +70,10 @@ void link_in_chapters(std::size_t frames, const PlacesOf& places, const Chapters
       for (const Sighting& s : chapter[f - start].balls) shared.back().push_back(s.track);
     }
     finish(chapter);
+    const std::vector<SeenFrame> bridged = bridged_sightings(chapter);
     // In the middle of the overlap both chapters know enough of what comes and went.
     for (const std::size_t to = last ? frames : again + chapters.overlap / 2; used < to; ++used)
-      use(used, chapter[used - start]);
+      use(used, chapter[used - start], bridged[used - start]);
     start = again;
   }
 }

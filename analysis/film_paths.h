@@ -19,10 +19,13 @@ struct Chapters {
 // the drum per frame [rad].
 Chapters chapters_of(double turn);
 
+// Gets a frame's sightings, and the balls that paths bridge in it.
+using UseFrame = std::function<void(std::size_t, const SeenFrame& seen, const SeenFrame& bridged)>;
+
 // Links sightings chapter by chapter; `finish` works on a whole linked chapter, `use` gets every frame once and in
 // order, with tracks that are numbered alike throughout.
 void link_in_chapters(std::size_t frames, const PlacesOf& places, const Chapters& chapters, const MotionModel& model,
                       const std::function<void(std::vector<SeenFrame>&)>& finish,
-                      const std::function<void(std::size_t, const SeenFrame&)>& use);
+                      const UseFrame& use);
 
 }  // namespace tumble::analysis

@@ -52,7 +52,29 @@ bool drawn_from_afar(const BallPlane& near, const BallPlane& afar) {
   return afar.uneven + kClear < near.uneven;
 }
 
+// By how much touching balls and those against the shell contradict each other.
+double contradiction(const BallPlane& plane) { return std::abs(plane.touching.value / plane.reach.value - 1); }
+
+// What was taken for the shell may be another circle. Where mill and balls are known and the balls' touching
+// contradicts it, its scale is tried without it: if they then stop at the shell, two witnesses outvote one.
+void doubt_shell(const FilmPass& pass, FilmScene& scene, BallPlane& plane) {
+  constexpr double kClear = 0.03, kAgreement = 0.012;
+  constexpr double kRough = 0.02;  // of a scale by touching balls
+  if (!(std::abs(plane.touching.value - 1) > kClear) || contradiction(plane) < kClear) return;
+  FilmScene other = scene;
+  multiply_lengths(other, 1 / plane.touching.value);
+  const BallPlane by_balls = measure_ball_plane(sample_of(pass, other), other.radius, {1.0, kRough});
+  if (!(contradiction(by_balls) < kAgreement)) return;
+  scene = std::move(other);
+  plane = by_balls;
+}
+
 }  // namespace
+
+void multiply_lengths(FilmScene& scene, double factor) {
+  scene.drum.camera = with_lengths_times(scene.drum.camera, factor);
+  scene.pixels_per_unit /= factor;
+}
 
 FilmScene make_scene(DrumView drum, const Config& known) {
   FilmScene scene;
@@ -93,16 +115,29 @@ void settle_lengths(FilmScene& scene, const FilmPass& pass, const std::vector<do
 
   const Estimate scale{1.0, scene.drum.scale.se};
   BallPlane plane = measure_ball_plane(sample_of(pass, scene), scene.radius, scale);
+  if (mill_known && sizes_known) doubt_shell(pass, scene, plane);
   scene.from_afar = true;
   const BallPlane afar = measure_ball_plane(sample_of(pass, scene), scene.radius, scale);
   scene.from_afar = drawn_from_afar(plane, afar);
   if (scene.from_afar) plane = afar;
 
+  std::vector<SeenFrame> sample = sample_of(pass, scene);
+  for (SeenFrame& frame : sample) drop_beyond(frame, scene.radius);
+  scene.one_layer = in_one_layer(sample);
+  DepthDoubt depth;
+  if (!scene.from_afar) {
+    double usual = 0;
+    for (double r : scene.radii) usual += r / static_cast<double>(scene.radii.size());
+    depth = depth_doubt(scene.one_layer, mill_length / scene.metres, usual, scene.drum.camera.translation.z(),
+                        scene.drum.focal.se / scene.drum.focal.value);
+  }
+  scene.place_error = std::hypot(plane.factor.se, depth.place_error);
+  scene.glass_error = std::hypot(scene.place_error, depth.glass_error);
+
   if (mill_known && sizes_known) {
-    scene.drum.camera = with_lengths_times(scene.drum.camera, plane.factor.value);
-    scene.pixels_per_unit /= plane.factor.value;
+    multiply_lengths(scene, plane.factor.value);
     if (!std::isnan(plane.touching.value) && !std::isnan(plane.reach.value) &&
-        std::abs(plane.touching.value / plane.reach.value - 1) > 0.03)
+        contradiction(plane) > 0.03)
       caveats.push_back(
           fmt::format("the balls' sizes and the mill's diameter do not fit together: by the distance at which balls "
                       "touch, the mill "
@@ -114,10 +149,7 @@ void settle_lengths(FilmScene& scene, const FilmPass& pass, const std::vector<do
       for (double& r : scene.radii) r *= plane.touching.value;
     if (sizes_known) scene.metres = sizes.front() / scene.radii.front();
   }
-
-  std::vector<SeenFrame> sample = sample_of(pass, scene);
-  for (SeenFrame& frame : sample) drop_beyond(frame, scene.radius);
-  scene.layer_length = std::isnan(mill_length) && in_one_layer(sample) ? 0.0 : mill_length / scene.metres;
+  scene.layer_length = std::isnan(mill_length) && scene.one_layer ? 0.0 : mill_length / scene.metres;
 }
 
 SeenFrame places_of(std::span<const FilmBall> balls, double time, const FilmScene& scene) {

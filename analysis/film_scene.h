@@ -21,10 +21,15 @@ struct FilmScene {
   std::vector<double> radii;        // of the size classes, in the camera's unit
   double metres = kNotGiven;        // per unit; NaN where nothing tells
   bool from_afar = false;           // drawn without perspective: depth does not show
+  bool one_layer = true;            // of balls; else they lie behind one another
+  double place_error = 0;           // relative standard error of all places together
+  double glass_error = 0;           // and of the scale in the plane of the glass
   double layer_length = kNotGiven;  // of a mill so shallow that balls hardly hide one another; NaN: unknown
 };
 
 FilmScene make_scene(DrumView drum, const Config& known);
+
+void multiply_lengths(FilmScene& scene, double factor);
 
 // Lengths by the balls, from a sample of the film's frames: where mill and balls are both known, they better the
 // camera's scale; where one is missing, the balls' touching gives their size in the unit of the other. `seen` radii: of

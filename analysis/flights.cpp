@@ -74,12 +74,47 @@ Fall fit_fall(std::span<const TrackPoint> p, double g) {
   return f;
 }
 
-void flights_of_ball(std::span<const TrackPoint> p, double g, std::vector<Flight>& flights) {
+// What blurs the places, along one axis: third differences of neighbouring sightings hold next to nothing else.
+struct Blur {
+  double sigma = 0;         // standard deviation
+  double interval = 0.005;  // between sightings [s]
+};
+
+Blur blur_of(std::span<const TrackPoint> sorted) {
+  std::vector<double> thirds, intervals;
+  for (std::size_t i = 3; i < sorted.size(); ++i) {
+    const TrackPoint *p = &sorted[i - 3], *q = &sorted[i];
+    const double dt = (q->time - p->time) / 3;
+    if (p->id != q->id || !(dt > 0)) continue;
+    bool even = true;
+    for (int k = 0; k < 3; ++k) even = even && std::abs(p[k + 1].time - p[k].time - dt) < 0.3 * dt;
+    if (!even) continue;
+    thirds.push_back(std::abs(p[3].x - 3 * p[2].x + 3 * p[1].x - p[0].x));
+    thirds.push_back(std::abs(p[3].y - 3 * p[2].y + 3 * p[1].y - p[0].y));
+    intervals.push_back(dt);
+  }
+  if (thirds.empty()) return {};
+  const auto median = [](std::vector<double>& v) {
+    const auto middle = v.begin() + static_cast<std::ptrdiff_t>(v.size() / 2);
+    std::nth_element(v.begin(), middle, v.end());
+    return *middle;
+  };
+  return {median(thirds) / (0.6745 * std::sqrt(20.0)), median(intervals)};
+}
+
+// Shortest stretch whose curvature is known to a tenth of gravity: that of n even places has the deviation
+// sigma sqrt(720 / n^5) / interval^2.
+double window_for(const Blur& blur, double g) {
+  const double ratio = blur.sigma / (0.1 * g * blur.interval * blur.interval);
+  return std::clamp((std::pow(720 * ratio * ratio, 0.2) - 1) * blur.interval, kLeastFlight, 2 * kLeastFlight);
+}
+
+void flights_of_ball(std::span<const TrackPoint> p, double g, const Blur& blur, std::vector<Flight>& flights) {
   const std::size_t n = p.size();
+  const double half = 0.5 * window_for(blur, g);
   std::vector<char> falling(n, 0);
-  std::size_t from = 0, to = 0;
+  std::size_t from = 0, to = 0, free_from = 0;  // the last: of any flight before
   for (std::size_t i = 0; i < n; ++i) {
-    const double half = 0.5 * kLeastFlight;
     while (p[i].time - p[from].time > half + 1e-9) ++from;
     while (to < n && p[to].time - p[i].time <= half + 1e-9) ++to;
     std::size_t a = from, b = to;
@@ -87,7 +122,7 @@ void flights_of_ball(std::span<const TrackPoint> p, double g, std::vector<Flight
       if (a > 0) --a;
       if (b < n && b - a < 5) ++b;
     }
-    if (b - a < 5 || p[b - 1].time - p[a].time > 4 * kLeastFlight) continue;
+    if (b - a < 5 || p[b - 1].time - p[a].time > 8 * half) continue;
     const auto window = p.subspan(a, b - a);
     const double ax = fit_parabola(window, p[i].time, [](const TrackPoint& q) { return q.x; }).curvature;
     const double ay = fit_parabola(window, p[i].time, [](const TrackPoint& q) { return q.y; }).curvature;
@@ -101,18 +136,23 @@ void flights_of_ball(std::span<const TrackPoint> p, double g, std::vector<Flight
     std::size_t end = i;
     while (end < n && falling[end]) ++end;
     if (end - i >= 3) {
-      const Fall fall = fit_fall(p.subspan(i, end - i), g);
-      // Both ends are where the ball leaves the parabola by a tenth of its radius.
-      const double tolerance = std::isnan(p[i].radius) ? 1e-3 * g : 0.1 * p[i].radius;
+      // Both ends are where the ball leaves the parabola by a tenth of its radius, or by more than places are blurred;
+      // one place that is off ends no flight.
+      const double tolerance = std::max(std::isnan(p[i].radius) ? 1e-3 * g : 0.1 * p[i].radius, 3.5 * blur.sigma);
       std::size_t first = i, last = end - 1;
-      while (first > 0 && fall.miss(p[first - 1]) < tolerance) --first;
-      while (last + 1 < n && fall.miss(p[last + 1]) < tolerance) ++last;
-      while (first < last && fall.miss(p[first]) >= tolerance) ++first;
-      while (last > first && fall.miss(p[last]) >= tolerance) --last;
+      Fall fall;
+      const auto on = [&](std::size_t k) { return k < n && fall.miss(p[k]) < tolerance; };
+      for (int round = 0; round < 4 && last >= first + 2; ++round) {  // a longer flight is a better parabola
+        fall = fit_fall(p.subspan(first, last + 1 - first), g);
+        while (first > free_from && (on(first - 1) || (first > free_from + 1 && on(first - 2)))) --first;
+        while (last + 1 < n && (on(last + 1) || on(last + 2))) ++last;
+        while (first < last && !on(first)) ++first;
+        while (last > first && !on(last)) --last;
+      }
       if (p[last].time - p[first].time >= kLeastFlight - 1e-9)
         flights.push_back({p[i].id, p[first].time, p[last].time, p[first].x, p[first].y, p[last].x, p[last].y,
                            first > 0, last + 1 < n});
-      end = std::max(end, last + 1);
+      free_from = end = std::max(end, last + 1);
     }
     i = end;
   }
@@ -151,6 +191,18 @@ Estimate median_direction(const std::vector<double>& directions) {
   return e;
 }
 
+// The longer a flight, the more likely that it is lost on the way: by how much the median would move if those that were
+// had landed farther round than half of the others.
+double shift_by_lost(const std::vector<double>& directions, std::size_t lost) {
+  if (directions.empty()) return 0;
+  const double median = median_direction(directions).value;
+  std::vector<double> beyond;
+  for (const double d : directions) beyond.push_back(wrap_180(d - median));
+  std::sort(beyond.begin(), beyond.end());
+  const std::size_t n = beyond.size();
+  return beyond[std::min(n - 1, (n + lost) / 2)] - beyond[n / 2];
+}
+
 }  // namespace
 
 std::vector<Flight> find_flights(std::span<const TrackPoint> tracks, double g) {
@@ -158,11 +210,12 @@ std::vector<Flight> find_flights(std::span<const TrackPoint> tracks, double g) {
   std::stable_sort(sorted.begin(), sorted.end(), [](const TrackPoint& a, const TrackPoint& b) {
     return a.id != b.id ? a.id < b.id : a.time < b.time;
   });
+  const Blur blur = blur_of(sorted);
   std::vector<Flight> flights;
   for (std::size_t i = 0; i < sorted.size();) {
     std::size_t end = i;
     while (end < sorted.size() && sorted[end].id == sorted[i].id) ++end;
-    flights_of_ball(std::span(sorted).subspan(i, end - i), g, flights);
+    flights_of_ball(std::span(sorted).subspan(i, end - i), g, blur, flights);
     i = end;
   }
   return flights;
@@ -190,13 +243,17 @@ std::vector<Flight> FlightLog::finish() {
 
 FlightAngles flight_angles(std::span<const Flight> flights, double shell_reach, double least_length) {
   std::vector<double> departures, impacts;
+  std::size_t lost = 0;  // in flight: where they end was not seen
   for (const Flight& f : flights) {
     if (!f.whole_start || std::hypot(f.start_x, f.start_y) < shell_reach) continue;
+    lost += !f.whole_end;
     if (std::hypot(f.end_x - f.start_x, f.end_y - f.start_y) < least_length) continue;
     departures.push_back(wrap_360(degrees(std::atan2(f.start_y, f.start_x))));
     if (f.whole_end) impacts.push_back(wrap_360(degrees(std::atan2(f.end_y, f.end_x))));
   }
-  return {median_direction(departures), median_direction(impacts)};
+  FlightAngles angles{median_direction(departures), median_direction(impacts)};
+  angles.impact_toe_deg.se = std::hypot(angles.impact_toe_deg.se, shift_by_lost(impacts, lost));
+  return angles;
 }
 
 }  // namespace tumble::analysis

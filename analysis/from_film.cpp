@@ -12,6 +12,7 @@
 #include "analysis/film_reader.h"
 #include "analysis/film_scene.h"
 #include "analysis/frame_clock.h"
+#include "analysis/shared_errors.h"
 #include "analysis/time_base.h"
 #include "analysis/view.h"
 #include "core/angle.h"
@@ -23,7 +24,8 @@ namespace {
 constexpr double kLeastScore = 0.2;      // of a ball: looked at at all
 constexpr double kCalibrateShare = 0.2;  // of the work, for the progress
 constexpr double kPassShare = 0.95;
-constexpr double kWorstRoll = 1.5;  // standard error beyond which a camera's roll is not believed [degrees]
+constexpr double kWorstRoll = 1.5;    // standard error beyond which a camera's roll is not believed [degrees]
+constexpr double kUnknownRoll = 2.0;  // of a camera that was levelled by eye, standard [degrees]
 
 const char* const kNoBalls = "shows no balls; balls of at least 3 pixels' radius were expected in the mill";
 
@@ -34,6 +36,24 @@ std::vector<cv::Mat> sample_pictures(const std::string& path) {
   for (int f = 0; f <= 36 && film.next(picture); ++f)
     if (f % 12 == 0) pictures.push_back(picture.clone());
   return pictures;
+}
+
+// Sizes of the balls. Where mill and balls are known, what was taken for the shell may turn out to be another circle: balls
+// that are seen to be of quite another size tell.
+BallLook look_at_balls(BallNet& net, const std::vector<cv::Mat>& sample, const std::vector<double>& sizes,
+                       const Config& known, FilmScene& scene) {
+  constexpr double kWidest = 1.7, kClearly = 1.2, kRough = 0.03;
+  const double scale = scene.pixels_per_unit;
+  ScaleRange scales;
+  if (known.mill.diameter > 0) scales = {0.88 * scale, 1.08 * scale};
+  BallLook look = learn_look(net, sample, scene.bound, sizes, scales);
+  if (!(known.mill.diameter > 0) || sizes.empty()) return look;
+  BallLook other = learn_look(net, sample, scene.bound, sizes, {scale / kWidest, scale * kWidest});
+  if (other.radii.empty() || !(other.explained > kClearly * look.explained)) return look;
+  multiply_lengths(scene, scale * sizes.front() / other.radii.front());
+  scene.drum.scale.se = kRough;
+  scene.bound.radius *= scene.pixels_per_unit / scale;
+  return other;
 }
 
 // Slope of the drum's angle over time, its error allowing for correlation.
@@ -155,6 +175,7 @@ Bearings find_bearings(const FilmScene& scene, const FreeFall& fall, const Estim
                        const Config& known, double told_rate, ChargeMotion& motion) {
   TimeWitnesses witnesses;
   witnesses.told_rate = told_rate;
+  witnesses.scale_error = std::max(0.01, scene.place_error);
   witnesses.file_rate = file_rate;
   if (!std::isnan(scene.metres)) witnesses.falling_rate = frames_per_second(fall, kGravity / scene.metres);
   witnesses.turn_per_frame = {std::abs(turn.value), turn.se};
@@ -163,6 +184,7 @@ Bearings find_bearings(const FilmScene& scene, const FreeFall& fall, const Estim
   bearings.base = judge_time_base(witnesses);
   motion.caveats.insert(motion.caveats.end(), bearings.base.caveats.begin(), bearings.base.caveats.end());
   motion.frames_per_second = bearings.base.frames_per_second.value;
+  motion.frames_per_second_se = bearings.base.frames_per_second.se;
   motion.camera.roll_deg = fall.roll_deg;
   if (!(fall.roll_deg.se < kWorstRoll)) {
     motion.caveats.push_back("too few balls are seen to fall freely to find the camera's roll: taken as upright");
@@ -197,6 +219,10 @@ void describe_mill(const FilmScene& scene, const Timeline& line, const Bearings&
   motion.camera.centre_v_px = middle.y;
   motion.camera.radius_px = scene.radius * scene.pixels_per_unit;
   motion.camera.metres_per_pixel = scene.metres / scene.pixels_per_unit;
+  motion.camera.centre_u_px_se = scene.drum.centre_u.se;
+  motion.camera.centre_v_px_se = scene.drum.centre_v.se;
+  motion.camera.radius_px_se = motion.camera.radius_px * scene.glass_error;
+  motion.camera.metres_per_pixel_se = motion.camera.metres_per_pixel * scene.glass_error;
   motion.camera.width_px = scene.drum.camera.width;
   motion.camera.height_px = scene.drum.camera.height;
   motion.mill_radius = scene.radius * scene.metres;
@@ -259,31 +285,44 @@ void gather(const FilmScene& scene, const FilmPass& pass, const Timeline& line, 
   const double lifter = std::isnan(scene.drum.lifter_angle) ? 0.0 : scene.drum.lifter_angle;
   ChargeStatistics statistics(geometry);
   std::vector<double> fillings;
+  double seen_area = 0, bridged_area = 0;
+  FrameSpool<TrackPoint> unseen;
   const auto finish = [&](std::vector<SeenFrame>& chapter) {
     smooth_velocities(chapter, std::isnan(fps) ? 3.0 : std::clamp(0.025 * fps, 2.0, 20.0));
     turn_upright(chapter, radians(bearings.roll_deg), clockwise);
   };
-  const auto use = [&](std::size_t row, const SeenFrame& seen) {
-    double area = 0;
+  const auto use = [&](std::size_t row, const SeenFrame& seen, const SeenFrame& bridged) {
+    double area = 0, between = 0;
     std::vector<FoundBall> found;
     for (const Sighting& s : seen.balls) {
       if (is_told(s)) area += s.radius * s.radius;
       found.push_back({s.u, s.v, s.radius * scene.pixels_per_unit, is_told(s) ? s.track : -1});
     }
-    fillings.push_back(area / (kSettledAreaShare * scene.radius * scene.radius));
+    for (const Sighting& s : bridged.balls) between += s.radius * s.radius;
+    seen_area += area;
+    bridged_area += between;
+    fillings.push_back((area + between) / (kSettledAreaShare * scene.radius * scene.radius));
     const std::size_t end = row + 1 < line.shown.size() ? line.shown[row + 1] : pass.frames();
     for (std::size_t f = line.shown[row]; f < end; ++f) {
-      const std::vector<TrackPoint> balls = points_of(seen, static_cast<int>(f), unit, rate);
+      const int frame = static_cast<int>(f);
       const double as_seen = degrees(lifter + pass.drum[f].angle) - bearings.roll_deg;
-      statistics.add(static_cast<int>(f), line.clock.source[f] / rate, clockwise ? 180 - as_seen : as_seen, balls,
-                     hidden);
+      statistics.add(frame, line.clock.source[f] / rate, clockwise ? 180 - as_seen : as_seen,
+                     points_of(seen, frame, unit, rate), hidden);
+      unseen.append(points_of(bridged, frame, unit, rate));
       findings.balls.append(found);
     }
   };
   link_in_chapters(line.shown.size(), places, chapters_of(line.turn.value), model_of(scene, line.turn.value, bearings),
                    finish, use);
   motion.filling = mean_of_series(fillings);
+  // Balls that no path bridges are missed about as often as those that one does.
+  motion.filling.se = std::hypot(motion.filling.se, motion.filling.value * bridged_area / seen_area);
   statistics.finish(motion);
+  if (!scene.one_layer) motion.filling = filling_of_deep_mill(motion.field, geometry.radius);
+  const double roll_se = motion.camera.roll_deg.se;
+  add_shared_errors(motion, geometry, hidden, unseen,
+                    {scene.drum.place_error / std::sqrt(2.0) * unit, scene.place_error,
+                     radians(roll_se < kWorstRoll ? roll_se : kUnknownRoll)});
 }
 
 }  // namespace
@@ -303,10 +342,8 @@ ChargeMotion measure_film(const std::string& path, const FilmOptions& options, c
   FilmScene scene = make_scene(std::move(drum), known);
 
   BallEyes eyes;
-  ScaleRange scales;
-  if (known.mill.diameter > 0) scales = {0.88 * scene.pixels_per_unit, 1.08 * scene.pixels_per_unit};
   const std::vector<cv::Mat> sample = sample_pictures(path);
-  BallLook look = learn_look(eyes.net, sample, scene.bound, sizes, scales);
+  BallLook look = look_at_balls(eyes.net, sample, sizes, known, scene);
   if (look.radii.empty()) throw InputError(path, kNoBalls);
   learn_rims(eyes, sample, scene.bound, look);
   const FilmPass pass = look_through(path, scene.drum, look, scene.bound, kLeastScore, [&](double done) {
@@ -335,7 +372,10 @@ ChargeMotion measure_film(const std::string& path, const FilmOptions& options, c
   };
   const FirstLook first = look_first(line, places, scene);
   if (std::isnan(first.mean_radius)) throw InputError(path, kNoBalls);
-  const Bearings bearings = find_bearings(scene, fall_of(first, scene.drum.readout.value), line.turn,
+  FreeFall fall = fall_of(first, scene.drum.readout.value);
+  // Seen from the side, a tilt that is wrong along one axis leans the other.
+  fall.roll_deg.se = std::hypot(fall.roll_deg.se, degrees(scene.drum.obliqueness.value * scene.drum.obliqueness.se));
+  const Bearings bearings = find_bearings(scene, fall, line.turn,
                                           reader.frames_per_second(), known, options.recorded_fps, motion);
   describe_mill(scene, line, bearings, known, motion);
   FilmFindings findings = findings_of(scene, pass, radians(bearings.roll_deg), motion);

@@ -16,7 +16,7 @@ constexpr double kNominalError = 0.03;     // of a speed that stands on a drawin
 constexpr double kWorstFall = 0.06;        // relative error beyond which flights do not overrule a file
 constexpr double kContradiction = 3;       // sigmas
 constexpr double kLeastDifference = 0.02;  // nothing smaller is a contradiction: nobody films at 31 frames/s
-constexpr double kSlowMotion = 1.9;        // least ratio of rates at which a nominal speed alone overrules a file
+constexpr double kSlowMotion = 1.4;        // least ratio of rates at which a nominal speed alone overrules a file
 
 // Rates that cameras offer, 1/s. Each also stands for itself x 1000/1001, which no flight can tell apart.
 constexpr std::array kCameraRates = {24.0,  25.0,  30.0,  48.0,  50.0,  60.0,  90.0,  100.0, 120.0, 180.0,
@@ -97,6 +97,15 @@ TimeBase judge_time_base(const TimeWitnesses& w) {
       check_speed(w.file_rate);
       return base;
     }
+    if (file && turns && !contradicts(w.file_rate, nominal) && std::abs(z_of(falling, nominal)) > kContradiction) {
+      // Two against one: hops that never were free fall agree among themselves, file and dial not by chance.
+      base.frames_per_second = {w.file_rate, 0.0};
+      say(
+          fmt::format("balls in flight fall as at {} frames/s, but the file's {:.4g} and the {:.3g} rev/min that are "
+                      "given for the mill agree: the file is believed",
+                      shown(falling), w.file_rate, w.nominal_rpm));
+      return base;
+    }
     Estimate best = falling;
     std::string grounds = fmt::format("balls in flight fall as at {}", shown(falling));
     if (turns && std::abs(z_of(falling, nominal)) < kContradiction) {
@@ -117,16 +126,19 @@ TimeBase judge_time_base(const TimeWitnesses& w) {
 
   if (file) {
     base.frames_per_second = {w.file_rate, kNotGiven};
-    const auto camera = turns ? camera_rate(nominal, w.file_rate) : std::nullopt;
     const double ratio = turns ? nominal.value / w.file_rate : 1.0;
-    if (camera && (ratio > kSlowMotion || ratio < 1 / kSlowMotion)) {
-      base.frames_per_second = {*camera, kNominalError * *camera};
+    if (ratio > kSlowMotion || ratio < 1 / kSlowMotion) {
+      // No dial is that wrong. Where no rate of cameras is clearly meant, the dial alone is still the better witness.
+      base.frames_per_second = {camera_rate(nominal, w.file_rate).value_or(nominal.value), nominal.se};
       say(fmt::format(
           "the file says {:.4g} frames/s, at which the mill would turn at {:.3g} rev/min instead of the {:.3g} "
           "given for it, and too few balls fly to tell: taken as recorded at {:.4g}; give --recorded-fps",
-          w.file_rate, rpm_at(w.file_rate), w.nominal_rpm, *camera));
+          w.file_rate, rpm_at(w.file_rate), w.nominal_rpm, base.frames_per_second.value));
       return base;
     }
+    // Two witnesses that agree settle it; of two that do not, either may be right.
+    if (turns)
+      base.frames_per_second.se = contradicts(w.file_rate, nominal) ? std::abs(w.file_rate - nominal.value) : 0;
     say(fmt::format("too few balls fly to check the file's {:.4g} frames/s", w.file_rate));
     check_speed(w.file_rate);
   } else if (turns) {

@@ -160,6 +160,40 @@ bool is_told(const Sighting& s) {
   return s.track >= 0 && s.score > kToldScore;
 }
 
+std::vector<SeenFrame> bridged_sightings(const std::vector<SeenFrame>& frames) {
+  struct Last {
+    std::size_t frame = 0;
+    const Sighting* seen = nullptr;
+  };
+  std::vector<SeenFrame> bridged(frames.size());
+  std::map<int, Last> last;
+  for (std::size_t f = 0; f < frames.size(); ++f)
+    for (const Sighting& s : frames[f].balls) {
+      if (!is_told(s)) continue;
+      Last& before = last[s.track];
+      for (std::size_t k = before.frame + 1; before.seen != nullptr && k < f; ++k) {
+        const Sighting& a = *before.seen;
+        const double span = s.time - a.time, begin = frames[before.frame].time;
+        const double share = (frames[k].time - begin) / (frames[f].time - begin);
+        const double chord_x = (s.x - a.x) / span, chord_y = (s.y - a.y) / span;
+        const auto or_chord = [](double v, double chord) { return std::isnan(v) ? chord : v; };
+        // Cubic: a flight is exact.
+        const double to = share * (1 - share) * (1 - share) * span, from = -share * share * (1 - share) * span;
+        Sighting b = a;
+        b.time = a.time + share * span;
+        b.x = a.x + share * (s.x - a.x) + to * (or_chord(a.vx, chord_x) - chord_x) +
+              from * (or_chord(s.vx, chord_x) - chord_x);
+        b.y = a.y + share * (s.y - a.y) + to * (or_chord(a.vy, chord_y) - chord_y) +
+              from * (or_chord(s.vy, chord_y) - chord_y);
+        b.vx = chord_x;
+        b.vy = chord_y;
+        bridged[k].balls.push_back(b);
+      }
+      before = {f, &s};
+    }
+  return bridged;
+}
+
 std::vector<TrackPoint> points_of(const SeenFrame& seen, int frame, double unit, double rate) {
   std::vector<TrackPoint> points;
   for (const Sighting& s : seen.balls) {

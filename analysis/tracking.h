@@ -51,6 +51,10 @@ void turn_upright(std::vector<SeenFrame>& frames, double roll, bool clockwise);
 // together.
 bool is_told(const Sighting& s);
 
+// Where paths say that balls are in frames in which they were not seen, by frame: between two sightings, with their
+// velocities.
+std::vector<SeenFrame> bridged_sightings(const std::vector<SeenFrame>& frames);
+
 // What is told of a frame, by track. `unit`: metres per length; `rate`: frames per second.
 std::vector<TrackPoint> points_of(const SeenFrame& seen, int frame, double unit, double rate);
 

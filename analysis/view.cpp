@@ -138,6 +138,8 @@ void shrink_to_film(ChargeMotion& m, int enlarged) {
   camera.centre_v_px = in_film(camera.centre_v_px, enlarged);
   camera.radius_px /= enlarged;
   camera.metres_per_pixel *= enlarged;
+  for (double* se : {&camera.centre_u_px_se, &camera.centre_v_px_se, &camera.radius_px_se}) *se /= enlarged;
+  camera.metres_per_pixel_se *= enlarged;
   camera.width_px /= enlarged;
   camera.height_px /= enlarged;
   m.tracks.change([&](TrackPoint& p) {

@@ -81,6 +81,8 @@ struct CameraView {                // films and stills only
   double metres_per_pixel = kNotGiven;
   Estimate roll_deg;
   int width_px = 0, height_px = 0;
+  double centre_u_px_se = kNotGiven, centre_v_px_se = kNotGiven;  // standard errors
+  double radius_px_se = kNotGiven, metres_per_pixel_se = kNotGiven;
 };
 
 struct ChargeMotion {
@@ -92,6 +94,7 @@ struct ChargeMotion {
   double tip_radius = kNotGiven;   // [m]
   int frames = 0;
   double frames_per_second = kNotGiven;  // true ones
+  double frames_per_second_se = kNotGiven;
   std::vector<int> duplicated_frames, dropped_frames;
 
   Estimate speed_rpm, speed_fraction, filling;

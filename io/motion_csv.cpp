@@ -126,12 +126,12 @@ std::string summary_json(const ChargeMotion& m) {
     put(s, name, (m.*q.of).value, (m.*q.of).se);
   }
   s["mill_centre_px"] = pair(number(m.camera.centre_u_px), number(m.camera.centre_v_px));
-  s["mill_centre_px_se"] = nullptr;
-  put(s, "mill_radius_px", m.camera.radius_px);
-  put(s, "metres_per_pixel", m.camera.metres_per_pixel);
+  s["mill_centre_px_se"] = pair(error(m.camera.centre_u_px_se), error(m.camera.centre_v_px_se));
+  put(s, "mill_radius_px", m.camera.radius_px, m.camera.radius_px_se);
+  put(s, "metres_per_pixel", m.camera.metres_per_pixel, m.camera.metres_per_pixel_se);
   put(s, "roll_deg", m.camera.roll_deg.value, m.camera.roll_deg.se);
   s["frames"] = m.frames;
-  put(s, "frames_per_second", m.frames_per_second);
+  put(s, "frames_per_second", m.frames_per_second, m.frames_per_second_se);
   s["duplicated_frames"] = m.duplicated_frames;
   s["dropped_frames"] = m.dropped_frames;
   s["caveats"] = m.caveats;

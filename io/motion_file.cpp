@@ -41,6 +41,7 @@ void walk(Io& io, Motion& m) {
   io.scalar("mill/tip_radius", "m", m.tip_radius);
   io.scalar("frames/count", "", m.frames);
   io.scalar("frames/per_second", "s-1", m.frames_per_second);
+  io.scalar("frames/per_second_se", "s-1", m.frames_per_second_se);
   io.array("frames/duplicated", "", m.duplicated_frames);
   io.array("frames/dropped", "", m.dropped_frames);
   for (const MotionQuantity& q : kMotionQuantities) io.estimate(std::string("summary/") + q.name, q.unit, m.*q.of);
@@ -49,6 +50,10 @@ void walk(Io& io, Motion& m) {
   io.scalar("camera/centre_v", "px", m.camera.centre_v_px);
   io.scalar("camera/radius", "px", m.camera.radius_px);
   io.scalar("camera/metres_per_pixel", "m", m.camera.metres_per_pixel);
+  io.scalar("camera/centre_u_se", "px", m.camera.centre_u_px_se);
+  io.scalar("camera/centre_v_se", "px", m.camera.centre_v_px_se);
+  io.scalar("camera/radius_se", "px", m.camera.radius_px_se);
+  io.scalar("camera/metres_per_pixel_se", "m", m.camera.metres_per_pixel_se);
   io.estimate("camera/roll", "deg", m.camera.roll_deg);
   io.scalar("camera/width", "px", m.camera.width_px);
   io.scalar("camera/height", "px", m.camera.height_px);

@@ -64,6 +64,15 @@ TEST(BallPlane, SetsTheScaleByWhereBallsStopAndTouch) {
   }
 }
 
+TEST(BallPlane, DepthBehindTheGlassIsAnError) {
+  // Balls of 10 mm radius in a mill 60 mm long lie 0 to 40 mm behind where they touch the glass.
+  const DepthDoubt shallow = depth_doubt(true, 0.06, 0.01, 2.0, 0.3);
+  EXPECT_NEAR(shallow.place_error, 0.01 * std::hypot(2 / std::sqrt(3.0), 0.3), 1e-12);
+  EXPECT_NEAR(shallow.glass_error, 0.3 * 0.03 / 2, 1e-12);
+  EXPECT_EQ(depth_doubt(true, 0.02, 0.01, 2.0, 0.3).place_error, 0);  // no room
+  EXPECT_GT(depth_doubt(false, kNotGiven, 0.01, 2.0, 0.3).place_error, 0);
+}
+
 TEST(BallPlane, TellsOneLayerFromBallsThatCoverOneAnother) {
   std::vector<SeenFrame> frames = bed(1);
   EXPECT_TRUE(in_one_layer(frames));

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <complex>
 
+#include "analysis/drum_turn.h"
 #include "core/error.h"
 #include "tests/analysis/painted_drum.h"
 
@@ -135,9 +136,30 @@ TEST(DrumCalibration, AFurtherPictureHasItsAngle) {
   const auto& [film, view] = oblique();
   DrumPainter painter(film.drum);  // the same drum, its balls elsewhere
   const double zero = view.angles[0].angle - film.angles[0], angle = film.angles.back() + 40 * film.drum.step;
-  const DrumAngle found = (*view.reader)(painter.paint(angle), angle + zero + 0.03);
+  const DrumAngle found = (*view.reader)(painter.paint(angle), angle + zero + 0.03, 0.03);
   EXPECT_NEAR(found.angle, angle + zero, 0.1 * kPi / 180);
   EXPECT_LT(found.error, 0.1 * kPi / 180);
+}
+
+// A band whose pattern nearly repeats itself three times round, and one picture of it in noise.
+TEST(DrumTurn, ADrumDoesNotJumpToWhereItLooksAlike) {
+  constexpr int kColumns = 720;
+  const auto band = [&](double angle, double odd) {
+    cv::Mat m(12, kColumns, CV_32F);
+    for (int k = 0; k < kColumns; ++k) {
+      const double a = 2 * kPi * k / kColumns - angle;
+      for (int r = 0; r < m.rows; ++r)
+        m.at<float>(r, k) = static_cast<float>(10 * std::cos(3 * a) + 8 * std::sin(9 * a) + odd * std::cos(4 * a));
+    }
+    return m;
+  };
+  // The picture is the pattern at 0.5, but what tells the three apart says that it is at 0.5 + 120 degrees.
+  cv::Mat picture = band(0.5, 0);
+  const cv::Mat elsewhere = band(0.5 + 2 * kPi / 3, 6) - band(0.5 + 2 * kPi / 3, 0);
+  picture += elsewhere;
+  const RoundSpectrum pattern(band(0, 6)), seen(picture);
+  EXPECT_NEAR(angle_of(pattern, seen, 0.48, 0.05), 0.5, 0.05);
+  EXPECT_NEAR(angle_of(pattern, seen, 0.48 + 2 * kPi / 3, 0.05), 0.5 + 2 * kPi / 3, 0.02);
 }
 
 TEST(DrumCalibration, ScaleIsGoodWithinItsError) {

@@ -60,6 +60,13 @@ TEST(TimeBase, FlightsAndNominalSpeedArePutTogetherWhereTheyAgree) {
   EXPECT_THAT(judge_time_base(w).caveats, ElementsAre(HasSubstr("317"), HasSubstr("60 are given for it")));
 }
 
+TEST(TimeBase, FileAndNominalSpeedTogetherOverruleFlights) {
+  TimeWitnesses w = film(120, {151, 8});
+  add_drum(w, 27, 120, 27.4);
+  EXPECT_EQ(judge_time_base(w).frames_per_second.value, 120);
+  EXPECT_THAT(judge_time_base(w).caveats, ElementsAre(HasSubstr("fall as at 151 +- 8")));
+}
+
 TEST(TimeBase, WhatIsToldIsBelievedAndContradictionReported) {
   TimeWitnesses w = film(30, {119, 2});
   w.told_rate = 120;
@@ -84,8 +91,15 @@ TEST(TimeBase, WithoutFlightsTheNominalSpeedShowsSlowMotionButNoLess) {
   add_drum(w, 43, 120, 43.8);
   EXPECT_EQ(judge_time_base(w).frames_per_second.value, 120);
   EXPECT_THAT(judge_time_base(w).caveats, ElementsAre(HasSubstr("give --recorded-fps")));
+  add_drum(w, 43, 110, 43);  // 100 or 120: as the dial says, to 3 %
+  EXPECT_NEAR(judge_time_base(w).frames_per_second.value, 110, 0.1);
+  EXPECT_NEAR(judge_time_base(w).frames_per_second.se, 3.3, 0.1);
+  add_drum(w, 43, 30.3, 43);  // file and dial agree
+  EXPECT_EQ(judge_time_base(w).frames_per_second.value, 30);
+  EXPECT_EQ(judge_time_base(w).frames_per_second.se, 0);
   add_drum(w, 43, 36, 43);  // a fifth: as likely another speed as another clock
   EXPECT_EQ(judge_time_base(w).frames_per_second.value, 30);
+  EXPECT_NEAR(judge_time_base(w).frames_per_second.se, 6, 0.1);
   EXPECT_THAT(judge_time_base(w).caveats, ElementsAre(HasSubstr("too few"), HasSubstr("43 are given for it")));
 }
 

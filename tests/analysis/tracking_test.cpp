@@ -143,6 +143,31 @@ TEST(Tracking, VelocityOfAParabolaIsExact) {
 }
 
 // Twenty balls are carried up and fall back, over and over; a bolt goes round with the drum, a lamp stands still.
+TEST(Tracking, BridgesAFlightAlongItsParabola) {
+  std::vector<SeenFrame> frames(12);
+  for (int f : {2, 8}) {
+    Sighting s;
+    s.time = f + 0.25;  // of its row
+    s.x = 0.01 * s.time;
+    s.y = 0.03 * s.time - 0.002 * s.time * s.time;
+    s.vx = 0.01;
+    s.vy = 0.03 - 0.004 * s.time;
+    s.track = 7;
+    s.score = 0.9;
+    frames[static_cast<std::size_t>(f)].balls.push_back(s);
+  }
+  for (std::size_t f = 0; f < frames.size(); ++f) frames[f].time = static_cast<double>(f);
+  const auto bridged = bridged_sightings(frames);
+  for (std::size_t f = 0; f < frames.size(); ++f) {
+    ASSERT_EQ(bridged[f].balls.size(), f > 2 && f < 8 ? 1u : 0u) << f;
+    if (bridged[f].balls.empty()) continue;
+    const double t = static_cast<double>(f) + 0.25;
+    EXPECT_NEAR(bridged[f].balls[0].x, 0.01 * t, 1e-12);
+    EXPECT_NEAR(bridged[f].balls[0].y, 0.03 * t - 0.002 * t * t, 1e-12);
+    EXPECT_EQ(bridged[f].balls[0].track, 7);
+  }
+}
+
 TEST(Tracking, TakesNeitherBoltNorLampForABall) {
   constexpr double kTurn = 0.05;
   std::vector<SeenFrame> frames(140);

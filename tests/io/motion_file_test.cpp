@@ -30,12 +30,13 @@ ChargeMotion a_motion(MotionSource source) {
   m.tip_radius = v();
   m.frames = 3;
   m.frames_per_second = v();
+  m.frames_per_second_se = v();
   m.duplicated_frames = {2, 5};
   m.dropped_frames = {7};
   for (const MotionQuantity& q : kMotionQuantities) m.*q.of = {v(), v()};
   m.departure_deg = {};
   m.filling.se = kNotGiven;
-  m.camera = {v(), v(), v(), v(), {v(), v()}, 1280, 720};
+  m.camera = {v(), v(), v(), v(), {v(), v()}, 1280, 720, v(), v(), v(), v()};
   for (double& o : m.ring_occupancy) o = v();
   m.ring_occupancy[17] = kNotGiven;
   m.profile = {{0, 0.0, v(), v(), v(), v()}, {1, v(), v(), kNotGiven, v(), v()}};
@@ -55,9 +56,10 @@ ChargeMotion a_motion(MotionSource source) {
 std::vector<std::uint64_t> numbers_of(const ChargeMotion& m) {
   std::vector<std::uint64_t> bits;
   const auto add = [&](double x) { bits.push_back(std::bit_cast<std::uint64_t>(x)); };
-  for (double x :
-       {m.mill_radius, m.tip_radius, m.frames_per_second, m.camera.centre_u_px, m.camera.centre_v_px,
-        m.camera.radius_px, m.camera.metres_per_pixel, m.camera.roll_deg.value, m.camera.roll_deg.se, m.field.cell})
+  for (double x : {m.mill_radius, m.tip_radius, m.frames_per_second, m.camera.centre_u_px, m.camera.centre_v_px,
+                   m.camera.radius_px, m.camera.metres_per_pixel, m.camera.roll_deg.value, m.camera.roll_deg.se,
+                   m.field.cell, m.frames_per_second_se, m.camera.centre_u_px_se, m.camera.centre_v_px_se,
+                   m.camera.radius_px_se, m.camera.metres_per_pixel_se})
     add(x);
   for (const MotionQuantity& q : kMotionQuantities) add((m.*q.of).value), add((m.*q.of).se);
   for (double o : m.ring_occupancy) add(o);
