@@ -63,7 +63,10 @@ std::vector<FilmFrame> look_through(const std::string& path, const DrumView& dru
         for (std::size_t i = w; i < pictures.size(); i += workers) {
           FilmFrame& frame = frames[first + i];
           frame.balls = detect_balls(*eyes[w], pictures[i], look, bound, least_score).balls;
-          for (const Detection& d : frame.balls) frame.colours.push_back(colour_of(pictures[i], d));
+          for (const Detection& d : frame.balls) {
+            frame.colours.push_back(colour_of(pictures[i], d));
+            frame.marks.push_back(look_at_mark(pictures[i], d.u, d.v, d.radius));
+          }
         }
     });
     report(progress, std::min(1.0, static_cast<double>(frames.size()) / std::max(1, film.frame_count())));

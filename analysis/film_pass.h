@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "analysis/ball_detector.h"
+#include "analysis/ball_mark.h"
 #include "analysis/drum_calibration.h"
 
 namespace tumble::analysis {
@@ -10,6 +11,7 @@ namespace tumble::analysis {
 struct FilmFrame {
   std::vector<Detection> balls;
   std::vector<std::array<float, 3>> colours;  // of the balls' inner parts [grey levels]
+  std::vector<MarkLook> marks;                // of the balls
   DrumAngle drum;
   double difference = kNotGiven;  // to the frame before (frame_clock.h)
 };

@@ -5,6 +5,7 @@
 #include <opencv2/core/utility.hpp>
 
 #include "analysis/ball_plane.h"
+#include "analysis/ball_spin.h"
 #include "analysis/ballistics.h"
 #include "analysis/charge_motion.h"
 #include "analysis/charge_statistics.h"
@@ -100,6 +101,7 @@ std::vector<SeenFrame> places_of(const std::vector<FilmFrame>& film, const Frame
       s.score = d.score;
       s.visible = d.visible;
       s.colour = film[f].colours[k];
+      s.mark = film[f].marks[k];
       s.u = d.u;
       s.v = d.v;
       s.time = clock.source[f] + readout * ((d.v + 0.5) / scene.drum.camera.height - 0.5);
@@ -342,6 +344,7 @@ ChargeMotion measure_film(const std::string& path, const FilmOptions& options, c
     link_sightings(frames, model);
   }
   smooth_velocities(frames, std::isnan(fps) ? 3.0 : std::clamp(0.025 * fps, 2.0, 20.0));
+  measure_spins(frames, turn.value);
   turn_upright(frames, radians(roll_deg), clockwise);
 
   const double unit = std::isnan(scene.metres) ? 1.0 : scene.metres, rate = std::isnan(fps) ? 1.0 : fps;
