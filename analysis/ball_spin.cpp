@@ -12,16 +12,16 @@
 namespace tumble::analysis {
 namespace {
 
-constexpr double kClear = 0.85;           // share seen of a ball whose look counts for whether it is marked
-constexpr double kHidden = 0.8;           // below it, what hides a ball turns it seemingly
-constexpr double kMarkContrast = 0.09;    // of a mark, rms round a ring, over the balls' usual brightness
-constexpr double kMarkOverNoise = 1.8;    // the same over what spoils patterns in this film
-constexpr double kFaintest = 0.85;        // of these, in single frames: marks roll out of sight
-constexpr double kWorstSpin = 0.035;      // standard error beyond which nothing is told [rad/frame]
-constexpr double kSureGap = 6;            // log likelihood by which the second best spin must be worse
-constexpr double kEvenSpoil = 2;          // spoiling over the usual one up to which a stretch turns evenly
-constexpr double kTilting = 0.5;           // error of a spin over the root of the share that it leaves unexplained
-constexpr int kLongestHalf = 3;           // frames
+constexpr double kClear = 0.85;              // share seen of a ball whose look counts for whether it is marked
+constexpr double kHidden = 0.8;              // below it, what hides a ball turns it seemingly
+constexpr double kMarkContrast = 0.09;       // of a mark, rms round a ring, over the balls' usual brightness
+constexpr double kMarkOverNoise = 1.8;       // the same over what spoils patterns in this film
+constexpr double kFaintest = 0.85;           // of these, in single frames: marks roll out of sight
+constexpr double kWorstSpin = 0.035;         // standard error beyond which nothing is told [rad/frame]
+constexpr double kSureGap = 6;               // log likelihood by which the second best spin must be worse
+constexpr double kEvenSpoil = 2;             // spoiling over the usual one up to which a stretch turns evenly
+constexpr double kTilting = 0.3;             // error of a spin over the root of the share that it leaves unexplained
+constexpr int kLongestHalf = 3;              // frames
 constexpr std::size_t kEnoughLooks = 20000;  // for what all balls share
 
 using Look = std::array<std::complex<double>, kMarkTerms>;
@@ -73,13 +73,20 @@ void take_off_light(std::vector<Seen>& all, double reach) {
       const auto there = (basis_at(*all[i].sighting, reach).transpose() * light).eval();
       double squares = 0;
       for (int k = 0; k < kMarkTerms; ++k) {
-        const std::complex<double> d = all[i].sighting->mark.term(k) - std::complex<double>(there[2 * k], there[2 * k + 1]);
+        const std::complex<double> d =
+            all[i].sighting->mark.term(k) - std::complex<double>(there[2 * k], there[2 * k + 1]);
         all[i].look[static_cast<std::size_t>(k)] = d;
         squares += std::norm(d);
       }
       away[i] = std::sqrt(squares);
     }
   }
+}
+
+double amplitude_of(const Look& look) {
+  double squares = 0;
+  for (const auto& p : look) squares += std::norm(p);
+  return std::sqrt(squares / kMarkRings);
 }
 
 // What is explained of a few looks by a pattern that turns by w a frame, as a log likelihood; and the pattern.
@@ -126,7 +133,7 @@ struct Expectation {
 SpinFit fit_spin(std::span<const Seen* const> looks, double about, const Expectation& expected) {
   SpinFit fit;
   const double span = looks.back()->sighting->time - looks.front()->sighting->time;
-  const double step = 0.08 / (kMarkHarmonics * std::max(1.0, 0.5 * span));
+  const double step = 0.25 / (kMarkHarmonics * std::max(1.0, 0.5 * span)), fine = 0.2 * step;
   const int half = static_cast<int>(std::ceil(std::clamp(4 * expected.spread, 0.5 * kPi, kPi) / step));
   std::vector<double> likelihood;
   for (int i = -half; i <= half; ++i) likelihood.push_back(turning(looks, about, i * step, expected.spoil).likelihood);
@@ -154,21 +161,24 @@ SpinFit fit_spin(std::span<const Seen* const> looks, double about, const Expecta
     }
   }
   if (best < 0) return fit;
-  const auto at = [&](int i) { return likelihood[static_cast<std::size_t>(i)]; };
-  const double bend = at(best - 1) - 2 * at(best) + at(best + 1);
-  if (!(bend < 0)) return fit;
-  fit.spin = ((best - half) + 0.5 * (at(best - 1) - at(best + 1)) / bend) * step;
+  const auto at = [&](double w) { return turning(looks, about, w, expected.spoil).likelihood; };
+  // A parabola through the peak, and a finer one through what it gives.
+  double peak = 0, bend = 0;
+  const auto refine = [&](double w, double by) {
+    const double left = at(w - by), middle = at(w), right = at(w + by);
+    bend = (left - 2 * middle + right) / (by * by);
+    if (bend < 0) peak = w + std::clamp(0.5 * (left - right) / (bend * by), -by, by);
+    return bend < 0;
+  };
+  if (!refine((best - half) * step, step) || !refine(peak, fine)) return fit;
+  fit.spin = peak;
   fit.gap = posterior(best) - second;
-  const double rest = turning(looks, about, 0, expected.spoil).likelihood;
-  const double riding = turning(looks, about, expected.turn, expected.spoil).likelihood;
-  fit.evidence = (at(best) - std::max(rest, riding)) / doubt;
-  const Turning found = turning(looks, about, fit.spin, expected.spoil);
-  double squares = 0;
-  for (const auto& p : found.pattern) squares += std::norm(p);
-  fit.amplitude = std::sqrt(squares / kMarkRings);
+  const double found_likelihood = at(fit.spin);
+  fit.evidence = (found_likelihood - std::max(at(0), at(expected.turn))) / doubt;
+  fit.amplitude = amplitude_of(turning(looks, about, fit.spin, expected.spoil).pattern);
   // Beyond noise, a ball that rolls about another axis shows a pattern that changes; that change may pass for a turn.
-  const double changed = std::max(0.0, all - at(best) - 1.5 * freedom) / std::max(all, 1e-9);
-  fit.se = std::hypot(step * std::sqrt(doubt / -bend), kTilting * std::sqrt(changed));
+  const double changed = std::max(0.0, all - found_likelihood - 1.5 * freedom) / std::max(all, 1e-9);
+  fit.se = std::hypot(std::sqrt(doubt / -bend), kTilting * std::sqrt(changed));
   return fit;
 }
 
@@ -205,16 +215,25 @@ Expectation expect(const std::vector<std::vector<Seen*>>& paths, const Expectati
         const double m = static_cast<double>(k % kMarkHarmonics + 1);
         double sum = 0;
         for (const Seen* s : near)
-          sum += std::norm(s->look[k] - found.pattern[k] * std::polar(1.0, -m * fit.spin * (s->sighting->time - about)));
+          sum +=
+              std::norm(s->look[k] - found.pattern[k] * std::polar(1.0, -m * fit.spin * (s->sighting->time - about)));
         squares[k].push_back(sum / static_cast<double>(near.size() - 1));
       }
     }
   Expectation usual = rough;
   if (!spins.empty()) usual.spread = std::clamp(3 * median_of(spins), 2 * std::abs(rough.turn), rough.spread);
   // The median of a sum of two exponentials is 0.84 of its mean; a tenth is more than rounding leaves.
-  for (std::size_t k = 0; k < kMarkTerms; ++k) 
+  for (std::size_t k = 0; k < kMarkTerms; ++k)
     if (!squares[k].empty()) usual.spoil[k] = median_of(squares[k]) / 0.84 + 0.1;
   return usual;
+}
+
+double upper_quartile(std::vector<double>& v) {
+  constexpr std::size_t kLeast = 5;  // sightings, to say anything of a ball
+  if (v.size() < kLeast) return 0;
+  const auto at = v.begin() + static_cast<std::ptrdiff_t>(3 * v.size() / 4);
+  std::nth_element(v.begin(), at, v.end());
+  return *at;
 }
 
 struct PathSpins {
@@ -223,9 +242,13 @@ struct PathSpins {
   double evidence = 0;   // summed
 };
 
-PathSpins spins_of(const std::vector<Seen*>& path, const Expectation& expected) {
+PathSpins spins_of(const std::vector<Seen*>& path, const Expectation& expected, double least) {
   PathSpins spins;
   std::vector<double> clear;
+  for (const Seen* s : path)
+    if (s->sighting->visible >= kClear) clear.push_back(amplitude_of(s->look));
+  if (upper_quartile(clear) < least) return spins;  // no pattern stands out more than its looks do
+  clear.clear();
   for (std::size_t i = 0; i < path.size(); ++i) {
     SpinFit fit;
     for (int half = 1; half <= kLongestHalf; ++half) {
@@ -240,11 +263,7 @@ PathSpins spins_of(const std::vector<Seen*>& path, const Expectation& expected) 
     clear.push_back(fit.amplitude);
     spins.evidence += fit.evidence;
   }
-  if (clear.size() >= 5) {
-    const auto at = clear.begin() + static_cast<std::ptrdiff_t>(3 * clear.size() / 4);
-    std::nth_element(clear.begin(), at, clear.end());
-    spins.amplitude = *at;
-  }
+  spins.amplitude = upper_quartile(clear);
   return spins;
 }
 
@@ -266,7 +285,7 @@ void measure_class(std::vector<Seen>& all, double reach, Expectation expected) {
 
   std::vector<PathSpins> spins(paths.size());
   parallel_for(paths.size(), 4, [&](std::size_t from, std::size_t to) {
-    for (std::size_t p = from; p < to; ++p) spins[p] = spins_of(paths[p], expected);
+    for (std::size_t p = from; p < to; ++p) spins[p] = spins_of(paths[p], expected, least);
   });
   double marked = 0, proven = 0;
   constexpr double kProof = 20;  // log likelihood of a path

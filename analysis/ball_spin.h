@@ -11,8 +11,8 @@ namespace tumble::analysis {
 //
 // What lamps paint on all balls alike stands still in the picture: harmonics regressed on place are taken off first.
 // What is left of a ball in three neighbouring frames, d_k, is held against a pattern T that turns evenly,
-// d_k = T exp(-i m w t_k): its best T is a mean, so the fit is one search over w, with no template, no unwrapping and no
-// state. Three frames, because balls are struck: over longer stretches a spin is not even. Weaker marks get longer
+// d_k = T exp(-i m w t_k): its best T is a mean, so the fit is one search over w, with no template, no unwrapping and
+// no state. Three frames, because balls are struck: over longer stretches a spin is not even. Weaker marks get longer
 // stretches where these turn evenly. A mark that maps onto itself by part of a turn fits several w: it is the one that
 // rolling at the balls' usual speeds makes likely, or none if two are.
 //

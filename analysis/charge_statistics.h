@@ -31,7 +31,8 @@ class ChargeStatistics {
   void add(int frame, double time, double mill_angle_deg, std::span<const TrackPoint> balls,
            const std::vector<bool>& hidden = {});
 
-  // Fills toe, shoulder, head, centre of circulation, departure, impact, ring occupancy, profile, field and tracks.
+  // Fills toe, shoulder, head, centre of circulation, free surface, times and shares, departure, impact, ring
+  // occupancy, profile, field and tracks.
   void finish(ChargeMotion& motion);
 
  private:

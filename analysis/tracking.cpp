@@ -177,6 +177,9 @@ std::vector<TrackPoint> points_of(const SeenFrame& seen, int frame, double unit,
     p.spin = s.spin * rate;
     p.u_px = s.u;
     p.v_px = s.v;
+    p.x_se = s.deviation * unit;
+    p.visible = s.visible;
+    p.confidence = s.confidence;
     points.push_back(p);
   }
   std::sort(points.begin(), points.end(), [](const TrackPoint& a, const TrackPoint& b) { return a.id < b.id; });

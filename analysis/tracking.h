@@ -14,16 +14,16 @@ struct Sighting {
   double radius = 0;
   double deviation = 0;  // of x and of y, standard
   int size_class = 0;
-  double score = 0;                       // of the detector, [0, 1]
-  double visible = 1;                     // share of its disc that nothing hides
-  std::array<float, 3> colour{};          // mean of its inner part [grey levels]
+  double score = 0;               // of the detector, [0, 1]
+  double visible = 1;             // share of its disc that nothing hides
+  std::array<float, 3> colour{};  // mean of its inner part [grey levels]
   MarkLook mark;
-  double u = kNotGiven, v = kNotGiven;    // centre in the picture [px]
-  double time = 0;                        // of this ball: recorded frame index, plus its row's delay
-  int track = -1;                         // filled by link_sightings; -1: not believed
-  double vx = kNotGiven, vy = kNotGiven;  // [length/frame], filled by smooth_velocities; NaN where unknown
+  double u = kNotGiven, v = kNotGiven;           // centre in the picture [px]
+  double time = 0;                               // of this ball: recorded frame index, plus its row's delay
+  int track = -1;                                // filled by link_sightings; -1: not believed
+  double vx = kNotGiven, vy = kNotGiven;         // [length/frame], filled by smooth_velocities; NaN where unknown
   double spin = kNotGiven, spin_se = kNotGiven;  // [rad/frame], filled by measure_spins; NaN where no mark tells
-  double confidence = kNotGiven;          // that the link to the sighting before is right, [0, 1]; NaN for the first
+  double confidence = kNotGiven;  // that the link to the sighting before is right, [0, 1]; NaN for the first
 };
 
 struct SeenFrame {

@@ -25,6 +25,7 @@ struct Column {
   const char* name;
   const char* unit;
   T Row::*of;
+  bool later = false;  // files of earlier programs lack it
 };
 
 // One function says where everything lies; it is walked to write and to read, so the two cannot disagree.
@@ -61,7 +62,11 @@ void walk(Io& io, Motion& m) {
            Column{"time", "s", &TrackPoint::time}, Column{"x", "m", &TrackPoint::x}, Column{"y", "m", &TrackPoint::y},
            Column{"vx", "m s-1", &TrackPoint::vx}, Column{"vy", "m s-1", &TrackPoint::vy},
            Column{"radius", "m", &TrackPoint::radius}, Column{"spin", "rad s-1", &TrackPoint::spin},
-           Column{"u", "px", &TrackPoint::u_px}, Column{"v", "px", &TrackPoint::v_px});
+           Column{"u", "px", &TrackPoint::u_px}, Column{"v", "px", &TrackPoint::v_px},
+           Column{"x_se", "m", &TrackPoint::x_se, true}, Column{"visible", "", &TrackPoint::visible, true},
+           Column{"confidence", "", &TrackPoint::confidence, true});
+  io.table("surface", m.surface, Column{"x", "m", &SurfacePoint::x, true}, Column{"y", "m", &SurfacePoint::y, true},
+           Column{"se", "m", &SurfacePoint::se, true});
   io.table("torque", m.torque_series, Column{"time", "s", &TorqueRow::time},
            Column{"torque", "N m", &TorqueRow::torque}, Column{"power", "W", &TorqueRow::power});
 
@@ -132,6 +137,7 @@ struct Reader {
     value = hdf5::read_scalar<T>(file, path);
   }
   void estimate(const std::string& path, const char* unit, Estimate& e) const {
+    if (!hdf5::exists(file, path)) return;  // quantities are added; files of earlier programs lack them
     scalar(path, unit, e.value);
     scalar(path + "_se", unit, e.se);
   }
@@ -172,6 +178,7 @@ struct Reader {
     const auto read = [&](const auto& column) {
       std::vector<std::decay_t<decltype(std::declval<Row>().*column.of)>> values;
       const std::string name = path + "/" + column.name;
+      if (column.later && !hdf5::exists(file, name)) return;
       array(name, column.unit, values);
       if (std::exchange(first, false)) rows.resize(values.size());
       if (values.size() != rows.size()) throw hdf5::Failure(name + " has another length than its neighbours");
