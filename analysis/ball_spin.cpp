@@ -12,11 +12,11 @@
 namespace tumble::analysis {
 namespace {
 
-constexpr double kClear = 0.85;              // share seen of a ball whose look counts for whether it is marked
-constexpr double kHidden = 0.8;              // below it, what hides a ball turns it seemingly
-constexpr double kMarkContrast = 0.09;       // of a mark, rms round a ring, over the balls' usual brightness
-constexpr double kMarkOverNoise = 1.8;       // the same over what spoils patterns in this film
-constexpr double kFaintest = 0.85;           // of these, in single frames: marks roll out of sight
+constexpr double kClear = 0.85;         // share seen of a ball whose look counts for whether it is marked
+constexpr double kHidden = 0.8;         // below it, what hides a ball turns it seemingly
+constexpr double kMarkContrast = 0.09;  // of a mark, rms round a ring, over the balls' usual brightness
+constexpr double kMarkOverNoise = 1.8;  // the same over what spoils patterns in this film
+constexpr double kFaintest = 0.75;  // of the clearest: a mark that rolls out of sight no longer turns as its ball does
 constexpr double kWorstSpin = 0.035;         // standard error beyond which nothing is told [rad/frame]
 constexpr double kSureGap = 6;               // log likelihood by which the second best spin must be worse
 constexpr double kEvenSpoil = 2;             // spoiling over the usual one up to which a stretch turns evenly
@@ -300,7 +300,8 @@ void measure_class(std::vector<Seen>& all, double reach, Expectation expected) {
     for (std::size_t i = 0; i < paths[p].size(); ++i) {
       const SpinFit& fit = spins[p].fits[i];
       Sighting& s = *paths[p][i]->sighting;
-      if (!(fit.se < kWorstSpin) || fit.gap < kSureGap || fit.amplitude < kFaintest * least || s.visible < kHidden)
+      if (!(fit.se < kWorstSpin) || fit.gap < kSureGap ||
+          fit.amplitude < std::max(least, kFaintest * spins[p].amplitude) || s.visible < kHidden)
         continue;
       s.spin = fit.spin;
       s.spin_se = fit.se;
