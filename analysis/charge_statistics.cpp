@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "analysis/circulation.h"
 #include "core/statistics.h"
 #include "core/units.h"
 
@@ -91,6 +92,9 @@ void ChargeStatistics::finish(ChargeMotion& motion) {
   const auto centre = field_.centre_of_circulation(1.5 * geometry_.mean_diameter);
   motion.centre_of_circulation_x = centre.x;
   motion.centre_of_circulation_y = centre.y;
+  const auto surface = field_.surface();
+  motion.surface = surface.line;
+  motion.surface_angle_deg = surface.angle_deg;
   if (flights_) {
     const auto flights = flights_->finish();
     // At the shell: still within the ring that toe and shoulder are read in. A flight worth the name carries the ball
@@ -98,6 +102,10 @@ void ChargeStatistics::finish(ChargeMotion& motion) {
     const FlightAngles angles = flight_angles(flights, ring_.inner, 0.5 * geometry_.radius);
     motion.departure_deg = angles.departure_deg;
     motion.impact_toe_deg = angles.impact_toe_deg;
+    motion.granular_temperature = field_.granular_temperature();
+    motion.circulation_time =
+        circulation_time(tracks_, field_, centre.x.value, centre.y.value, geometry_.mean_diameter);
+    motion.flight_share = flight_share(tracks_, flights);
   }
   motion.tracks = std::move(tracks_);
 }

@@ -33,7 +33,8 @@ class ChargeStatistics {
   void add(int frame, double time, double mill_angle_deg, std::span<const TrackPoint> balls,
            const std::vector<bool>& hidden = {}, std::span<const TrackPoint> unseen = {});
 
-  // Fills toe, shoulder, head, centre of circulation, departure, impact, ring occupancy, profile, field and tracks.
+  // Fills toe, shoulder, head, centre of circulation, free surface, times and shares, departure, impact, ring
+  // occupancy, profile, field and tracks.
   void finish(ChargeMotion& motion);
 
  private:

@@ -65,7 +65,7 @@ FilmPass look_through(const std::string& path, const DrumView& drum, const BallL
       for (std::size_t w = from; w < to; ++w)
         for (std::size_t i = w; i < pictures.size(); i += workers)
           for (const Detection& d : detect_balls(*eyes[w], pictures[i], look, bound, least_score).balls)
-            balls[i].push_back({d, colour_of(pictures[i], d)});
+            balls[i].push_back({d, colour_of(pictures[i], d), look_at_mark(pictures[i], d.u, d.v, d.radius)});
     });
     for (const auto& of_frame : balls) pass.balls.append(of_frame);
     report(progress, std::min(1.0, static_cast<double>(pass.frames()) / std::max(1, film.frame_count())));

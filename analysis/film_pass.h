@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "analysis/ball_detector.h"
+#include "analysis/ball_mark.h"
 #include "analysis/drum_calibration.h"
 #include "core/spool.h"
 
@@ -12,6 +13,7 @@ namespace tumble::analysis {
 struct FilmBall {
   Detection found;
   std::array<float, 3> colour{};  // of its inner part [grey levels]
+  MarkLook mark;
 };
 
 // What one look at every frame gives, by frame of the file.

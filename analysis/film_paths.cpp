@@ -47,8 +47,7 @@ Chapters chapters_of(double turn) {
 }
 
 void link_in_chapters(std::size_t frames, const PlacesOf& places, const Chapters& chapters, const MotionModel& model,
-                      const std::function<void(std::vector<SeenFrame>&)>& finish,
-                      const UseFrame& use) {
+                      const std::function<void(std::vector<SeenFrame>&)>& finish, const UseFrame& use) {
   TrackIds shared;  // of the frames that this chapter shares with the one before
   int next_number = 0;
   std::size_t used = 0;

@@ -25,7 +25,6 @@ using UseFrame = std::function<void(std::size_t, const SeenFrame& seen, const Se
 // Links sightings chapter by chapter; `finish` works on a whole linked chapter, `use` gets every frame once and in
 // order, with tracks that are numbered alike throughout.
 void link_in_chapters(std::size_t frames, const PlacesOf& places, const Chapters& chapters, const MotionModel& model,
-                      const std::function<void(std::vector<SeenFrame>&)>& finish,
-                      const UseFrame& use);
+                      const std::function<void(std::vector<SeenFrame>&)>& finish, const UseFrame& use);
 
 }  // namespace tumble::analysis

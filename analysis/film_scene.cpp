@@ -30,6 +30,7 @@ SeenFrame all_places_of(std::span<const FilmBall> balls, double time, const Film
     s.score = d.score;
     s.visible = d.visible;
     s.colour = seen.colour;
+    s.mark = seen.mark;
     s.u = d.u;
     s.v = d.v;
     s.time = time + readout * ((d.v + 0.5) / scene.drum.camera.height - 0.5);
@@ -136,8 +137,7 @@ void settle_lengths(FilmScene& scene, const FilmPass& pass, const std::vector<do
 
   if (mill_known && sizes_known) {
     multiply_lengths(scene, plane.factor.value);
-    if (!std::isnan(plane.touching.value) && !std::isnan(plane.reach.value) &&
-        contradiction(plane) > 0.03)
+    if (!std::isnan(plane.touching.value) && !std::isnan(plane.reach.value) && contradiction(plane) > 0.03)
       caveats.push_back(
           fmt::format("the balls' sizes and the mill's diameter do not fit together: by the distance at which balls "
                       "touch, the mill "

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "core/angle.h"
 #include "core/random.h"
@@ -254,6 +255,24 @@ FlightAngles flight_angles(std::span<const Flight> flights, double shell_reach, 
   FlightAngles angles{median_direction(departures), median_direction(impacts)};
   angles.impact_toe_deg.se = std::hypot(angles.impact_toe_deg.se, shift_by_lost(impacts, lost));
   return angles;
+}
+
+Estimate flight_share(const Spool<TrackPoint>& tracks, std::span<const Flight> flights) {
+  std::map<int, std::vector<const Flight*>> by_ball;
+  for (const Flight& f : flights) by_ball[f.id].push_back(&f);
+  std::map<int, std::pair<double, double>> frames;  // balls in flight, balls
+  for (const TrackPoint& p : tracks) {
+    auto& [flying, all] = frames[p.frame];
+    all += 1;
+    const auto ball = by_ball.find(p.id);
+    if (ball != by_ball.end())
+      flying += std::any_of(ball->second.begin(), ball->second.end(), [&](const Flight* f) {
+        return p.time >= f->start_time - 1e-9 && p.time <= f->end_time + 1e-9;
+      });
+  }
+  std::vector<double> shares;
+  for (const auto& [frame, counts] : frames) shares.push_back(counts.first / counts.second);
+  return shares.empty() ? Estimate{} : mean_of_series(shares);
 }
 
 }  // namespace tumble::analysis

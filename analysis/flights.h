@@ -43,4 +43,7 @@ struct FlightAngles {
 // start to end; shorter ones are hops within the charge, of which there are many and which have no toe.
 FlightAngles flight_angles(std::span<const Flight> flights, double shell_reach, double least_length);
 
+// Share of the balls that are in one of these flights, over all frames.
+Estimate flight_share(const Spool<TrackPoint>& tracks, std::span<const Flight> flights);
+
 }  // namespace tumble::analysis

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <opencv2/core/utility.hpp>
 
+#include "analysis/ball_spin.h"
 #include "analysis/ballistics.h"
 #include "analysis/charge_motion.h"
 #include "analysis/charge_statistics.h"
@@ -38,8 +39,8 @@ std::vector<cv::Mat> sample_pictures(const std::string& path) {
   return pictures;
 }
 
-// Sizes of the balls. Where mill and balls are known, what was taken for the shell may turn out to be another circle: balls
-// that are seen to be of quite another size tell.
+// Sizes of the balls. Where mill and balls are known, what was taken for the shell may turn out to be another circle:
+// balls that are seen to be of quite another size tell.
 BallLook look_at_balls(BallNet& net, const std::vector<cv::Mat>& sample, const std::vector<double>& sizes,
                        const Config& known, FilmScene& scene) {
   constexpr double kWidest = 1.7, kClearly = 1.2, kRough = 0.03;
@@ -289,6 +290,7 @@ void gather(const FilmScene& scene, const FilmPass& pass, const Timeline& line, 
   FrameSpool<TrackPoint> unseen;
   const auto finish = [&](std::vector<SeenFrame>& chapter) {
     smooth_velocities(chapter, std::isnan(fps) ? 3.0 : std::clamp(0.025 * fps, 2.0, 20.0));
+    measure_spins(chapter, line.turn.value);
     turn_upright(chapter, radians(bearings.roll_deg), clockwise);
   };
   const auto use = [&](std::size_t row, const SeenFrame& seen, const SeenFrame& bridged) {
@@ -375,8 +377,8 @@ ChargeMotion measure_film(const std::string& path, const FilmOptions& options, c
   FreeFall fall = fall_of(first, scene.drum.readout.value);
   // Seen from the side, a tilt that is wrong along one axis leans the other.
   fall.roll_deg.se = std::hypot(fall.roll_deg.se, degrees(scene.drum.obliqueness.value * scene.drum.obliqueness.se));
-  const Bearings bearings = find_bearings(scene, fall, line.turn,
-                                          reader.frames_per_second(), known, options.recorded_fps, motion);
+  const Bearings bearings =
+      find_bearings(scene, fall, line.turn, reader.frames_per_second(), known, options.recorded_fps, motion);
   describe_mill(scene, line, bearings, known, motion);
   FilmFindings findings = findings_of(scene, pass, radians(bearings.roll_deg), motion);
   gather(scene, pass, line, places, bearings, first.mean_radius, motion, findings);

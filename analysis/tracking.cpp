@@ -152,6 +152,7 @@ void turn_upright(std::vector<SeenFrame>& frames, double roll, bool clockwise) {
       b.y = y;
       b.vx = clockwise ? -vx : vx;
       b.vy = vy;
+      if (clockwise) b.spin = -b.spin;
     }
 }
 
@@ -207,8 +208,12 @@ std::vector<TrackPoint> points_of(const SeenFrame& seen, int frame, double unit,
     p.vx = s.vx * unit * rate;
     p.vy = s.vy * unit * rate;
     p.radius = s.radius * unit;
+    p.spin = s.spin * rate;
     p.u_px = s.u;
     p.v_px = s.v;
+    p.x_se = s.deviation * unit;
+    p.visible = s.visible;
+    p.confidence = s.confidence;
     points.push_back(p);
   }
   std::sort(points.begin(), points.end(), [](const TrackPoint& a, const TrackPoint& b) { return a.id < b.id; });

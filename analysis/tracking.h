@@ -2,6 +2,7 @@
 #include <array>
 #include <vector>
 
+#include "analysis/ball_mark.h"
 #include "core/charge_motion.h"
 #include "core/config.h"
 
@@ -13,14 +14,16 @@ struct Sighting {
   double radius = 0;
   double deviation = 0;  // of x and of y, standard
   int size_class = 0;
-  double score = 0;                       // of the detector, [0, 1]
-  double visible = 1;                     // share of its disc that nothing hides
-  std::array<float, 3> colour{};          // mean of its inner part [grey levels]
-  double u = kNotGiven, v = kNotGiven;    // centre in the picture [px]
-  double time = 0;                        // of this ball: recorded frame index, plus its row's delay
-  int track = -1;                         // filled by link_sightings; -1: not believed
-  double vx = kNotGiven, vy = kNotGiven;  // [length/frame], filled by smooth_velocities; NaN where unknown
-  double confidence = kNotGiven;          // that the link to the sighting before is right, [0, 1]; NaN for the first
+  double score = 0;               // of the detector, [0, 1]
+  double visible = 1;             // share of its disc that nothing hides
+  std::array<float, 3> colour{};  // mean of its inner part [grey levels]
+  MarkLook mark;
+  double u = kNotGiven, v = kNotGiven;           // centre in the picture [px]
+  double time = 0;                               // of this ball: recorded frame index, plus its row's delay
+  int track = -1;                                // filled by link_sightings; -1: not believed
+  double vx = kNotGiven, vy = kNotGiven;         // [length/frame], filled by smooth_velocities; NaN where unknown
+  double spin = kNotGiven, spin_se = kNotGiven;  // [rad/frame], filled by measure_spins; NaN where no mark tells
+  double confidence = kNotGiven;  // that the link to the sighting before is right, [0, 1]; NaN for the first
 };
 
 struct SeenFrame {
@@ -44,7 +47,7 @@ int link_sightings(std::vector<SeenFrame>& frames, const MotionModel& model);
 // Velocities from parabolas through the sightings of the same path within `window` frames.
 void smooth_velocities(std::vector<SeenFrame>& frames, double window);
 
-// Turns places and velocities so that the mill stands upright, and mirrors them where it turns clockwise.
+// Turns places and velocities so that the mill stands upright, and mirrors them and spins where it turns clockwise.
 void turn_upright(std::vector<SeenFrame>& frames, double roll, bool clockwise);
 
 // Whether a sighting is told of: it has its path and is more likely a ball than not. Fainter ones only keep paths

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "analysis/free_surface.h"
+
 namespace tumble::analysis {
 namespace {
 
@@ -43,6 +45,15 @@ Plane fit_plane(const std::vector<double>& sums, double cell, double x0, double 
   plane.coefficients = normal.ldlt().solve(right);
   plane.known = plane.coefficients.allFinite();
   return plane;
+}
+
+double error_of_mean(const std::vector<double>& batches) {
+  const double n = static_cast<double>(batches.size());
+  if (n < 4) return kNotGiven;
+  double mean = 0, squares = 0;
+  for (const double b : batches) mean += b / n;
+  for (const double b : batches) squares += (b - mean) * (b - mean);
+  return std::sqrt(squares / (n * (n - 1)));
 }
 
 }  // namespace
@@ -192,6 +203,91 @@ FieldStatistics::Centre FieldStatistics::centre_of_circulation(double reach) con
   best.x.se = std::sqrt(std::max(0.0, variance.x()));
   best.y.se = std::sqrt(std::max(0.0, variance.y()));
   return best;
+}
+
+std::vector<double> FieldStatistics::occupancy_of(std::span<const double> sums, double frames) const {
+  std::vector<double> occupancy(sums.begin(), sums.begin() + kCells);  // kCovered comes first
+  for (double& o : occupancy) o /= frames;
+  return occupancy;
+}
+
+FieldStatistics::Surface FieldStatistics::surface() const {
+  Surface surface;
+  if (sums_.rows() == 0) return surface;
+  const std::vector<double> mean = occupancy_of(sums_.total(), static_cast<double>(sums_.rows()));
+  const double level = half_bulk(mean);
+  const SurfaceLine line = free_surface(mean, kFieldCells, cell_, level);
+  surface.angle_deg.value = surface_angle_deg(line.bed, line.across, line.height);
+  const double c = std::cos(line.bed), s = std::sin(line.bed);
+  for (std::size_t i = 0; i < line.across.size(); ++i)
+    surface.line.push_back(
+        {-c * line.height[i] - s * line.across[i], -s * line.height[i] + c * line.across[i], kNotGiven});
+  const auto batches = sums_.batches(kBatches);
+  if (batches.size() < 4) return surface;
+  // The same points and direction in each batch; a batch in which a point has no charge says nothing of it.
+  std::vector<std::vector<double>> heights(line.across.size());
+  std::vector<double> angles;
+  const double each = static_cast<double>(sums_.rows()) / static_cast<double>(batches.size());
+  for (const auto& batch : batches) {
+    const auto there = surface_heights(occupancy_of(batch, each), kFieldCells, cell_, level, line.bed, line.across);
+    for (std::size_t i = 0; i < there.size(); ++i)
+      if (!std::isnan(there[i])) heights[i].push_back(there[i]);
+    const double angle = surface_angle_deg(line.bed, line.across, there);
+    if (!std::isnan(angle)) angles.push_back(angle);
+  }
+  for (std::size_t i = 0; i < heights.size(); ++i) surface.line[i].se = error_of_mean(heights[i]);
+  surface.angle_deg.se = error_of_mean(angles);
+  return surface;
+}
+
+std::vector<bool> FieldStatistics::charge() const {
+  std::vector<bool> charge(kCells, false);
+  if (sums_.rows() == 0) return charge;
+  const std::vector<double> mean = occupancy_of(sums_.total(), static_cast<double>(sums_.rows()));
+  const double level = half_bulk(mean);
+  for (std::size_t k = 0; k < kCells; ++k) charge[k] = mean[k] >= level;
+  return charge;
+}
+
+std::size_t FieldStatistics::cell_at(double x, double y) const {
+  const double i = std::floor(x / cell_ + 0.5 * kFieldCells), j = std::floor(y / cell_ + 0.5 * kFieldCells);
+  if (!(i >= 0 && j >= 0 && i < kFieldCells && j < kFieldCells)) return kCells;
+  return static_cast<std::size_t>(j) * kFieldCells + static_cast<std::size_t>(i);
+}
+
+Estimate FieldStatistics::granular_temperature() const {
+  Estimate temperature;
+  const std::vector<bool> charge = this->charge();
+  const auto total = sums_.total();
+  double weight = 0;
+  const auto squares_of = [&](const std::vector<double>& sums, double& covered) {  // about the whole time's mean
+    double squares = 0;
+    covered = 0;
+    for (std::size_t k = 0; k < kCells; ++k) {
+      const double w = total[at(kMoving, k)];
+      if (!charge[k] || w <= 0) continue;
+      const double vx = total[at(kSumVx, k)] / w, vy = total[at(kSumVy, k)] / w;
+      squares += sums[at(kSumSquares, k)] - 2 * (vx * sums[at(kSumVx, k)] + vy * sums[at(kSumVy, k)]) +
+                 (vx * vx + vy * vy) * sums[at(kMoving, k)];
+      covered += sums[at(kMoving, k)];
+    }
+    return 0.5 * squares;
+  };
+  const double all = squares_of(total, weight);
+  if (!(weight > 0)) return temperature;
+  temperature.value = std::max(0.0, all / weight);
+  const auto batches = sums_.batches(kBatches);
+  const double n = static_cast<double>(batches.size());
+  if (batches.size() < 4) return temperature;
+  double sum = 0;
+  for (const auto& batch : batches) {  // ratio estimator, as in field()
+    double covered = 0;
+    const double squares = squares_of(batch, covered);
+    const double d = squares - temperature.value * covered;
+    sum += d * d;
+  }
+  temperature.se = std::sqrt(sum * n / (n - 1)) / weight;
+  return temperature;
 }
 
 }  // namespace tumble::analysis

@@ -30,7 +30,20 @@ class FieldStatistics {
   // single noisy cells do not move it. NaN where no vortex turns with the mill.
   Centre centre_of_circulation(double reach) const;
 
+  struct Surface {
+    std::vector<SurfacePoint> line;
+    Estimate angle_deg;
+  };
+  Surface surface() const;  // of the charge (free_surface.h)
+
+  // The charge: where more than half of the bulk's occupancy is covered, cell by cell.
+  std::vector<bool> charge() const;
+  std::size_t cell_at(double x, double y) const;  // past the last one outside the grid
+  Estimate granular_temperature() const;          // mean over the charge, weighted by what covers it
+
  private:
+  std::vector<double> occupancy_of(std::span<const double> sums, double frames) const;
+
   double radius_, cell_;
   BlockSums sums_;
   std::vector<double> row_;  // scratch: one frame's sums

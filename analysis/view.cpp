@@ -150,10 +150,11 @@ void shrink_to_film(ChargeMotion& m, int enlarged) {
 
 void forget_lengths(ChargeMotion& m) {
   for (ProfileRow& row : m.profile) row.head = kNotGiven;
-  m.tracks.change([](TrackPoint& p) { p.x = p.y = p.vx = p.vy = p.radius = kNotGiven; });
+  m.tracks.change([](TrackPoint& p) { p.x = p.y = p.vx = p.vy = p.radius = p.x_se = kNotGiven; });
   m.head = m.centre_of_circulation_x = m.centre_of_circulation_y = {};
   m.mill_radius = m.tip_radius = kNotGiven;
   m.field = {};
+  m.surface.clear();
   m.caveats.push_back("scale unknown: give mill.diameter or charge.balls");
 }
 

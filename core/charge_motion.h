@@ -58,6 +58,9 @@ struct TrackPoint {  // one ball seen in one frame
   double radius = kNotGiven;                  // [m]
   double spin = kNotGiven;                    // [rad/s]
   double u_px = kNotGiven, v_px = kNotGiven;  // centre in the film's own pixels, v down; NaN for run files
+  double x_se = kNotGiven;                    // standard error of x and of y [m]; this and what follows: films only
+  double visible = kNotGiven;                 // share of its disc that is seen, [0, 1]
+  double confidence = kNotGiven;              // that the link to the sighting before is right, [0, 1]
 };
 
 struct Field {      // on a square grid over the mill, row by row from the lowest y; NaN where nothing is known
@@ -66,6 +69,11 @@ struct Field {      // on a square grid over the mill, row by row from the lowes
   std::vector<double> occupancy, occupancy_se;  // share of the area covered by balls, time mean
   std::vector<double> vx, vy, vx_se, vy_se;     // mean ball velocity [m/s]
   std::vector<double> temperature;              // granular temperature, <(v - <v>)^2> / 2 [m2/s2]
+};
+
+struct SurfacePoint {     // of the charge's free surface
+  double x = 0, y = 0;    // [m]
+  double se = kNotGiven;  // across the bed's middle: along the direction in which the charge lies [m]
 };
 
 struct TorqueRow {
@@ -102,12 +110,17 @@ struct ChargeMotion {
   Estimate head;                                              // [m]
   Estimate centre_of_circulation_x, centre_of_circulation_y;  // [m]
   Estimate departure_deg, impact_toe_deg;
+  Estimate surface_angle_deg;       // dynamic angle of repose: of the free surface's middle half against the horizontal
+  Estimate flight_share;            // of the balls, in free fall
+  Estimate circulation_time;        // of a full turn about the centre of circulation, in the charge [s]
+  Estimate granular_temperature;    // mean over the charge [m2/s2]
   Estimate torque, torque_closure;  // of one slice [N m]; run files only
   CameraView camera;
 
   std::array<double, 360> ring_occupancy{};  // time mean, bin i = [i, i + 1) degrees; NaN where hidden
   std::vector<ProfileRow> profile;
-  Spool<TrackPoint> tracks;  // by frame, then id
+  Spool<TrackPoint> tracks;           // by frame, then id
+  std::vector<SurfacePoint> surface;  // from toe to shoulder
   std::vector<TorqueRow> torque_series;
   Field field;
   std::vector<std::string> caveats;  // what a user must know before believing the numbers

@@ -30,6 +30,10 @@ inline constexpr std::array kMotionQuantities{
     MotionQuantity{"centre_of_circulation_y_m", "m", "m", &ChargeMotion::centre_of_circulation_y},
     MotionQuantity{"departure_deg", "deg", "deg", &ChargeMotion::departure_deg, true},
     MotionQuantity{"impact_toe_deg", "deg", "deg", &ChargeMotion::impact_toe_deg, true},
+    MotionQuantity{"surface_angle_deg", "deg", "deg", &ChargeMotion::surface_angle_deg, true},
+    MotionQuantity{"flight_share", "", "of the balls", &ChargeMotion::flight_share},
+    MotionQuantity{"circulation_time_s", "s", "s", &ChargeMotion::circulation_time},
+    MotionQuantity{"granular_temperature_m2_s2", "m2 s-2", "m2/s2", &ChargeMotion::granular_temperature},
     MotionQuantity{"torque_N_m", "N m", "N m", &ChargeMotion::torque},
     MotionQuantity{"torque_closure_N_m", "N m", "N m", &ChargeMotion::torque_closure},
 };

@@ -76,8 +76,9 @@ void write_profile(const fs::path& path, const ChargeMotion& m) {
 
 void write_tracks(const fs::path& path, const ChargeMotion& m) {
   const bool film = m.source != MotionSource::kRunFile;
-  Table table(path, film ? "frame,time_s,id,x_m,y_m,vx_m_s,vy_m_s,radius_m,spin_rad_s,u_px,v_px"
-                         : "frame,time_s,id,x_m,y_m,vx_m_s,vy_m_s,radius_m,spin_rad_s");
+  Table table(path,
+              film ? "frame,time_s,id,x_m,y_m,vx_m_s,vy_m_s,radius_m,spin_rad_s,u_px,v_px,x_se_m,visible,confidence"
+                   : "frame,time_s,id,x_m,y_m,vx_m_s,vy_m_s,radius_m,spin_rad_s,x_se_m,visible,confidence");
   for (const TrackPoint& p : m.tracks) {
     table.whole(p.frame)
         .digits(p.time, 9)
@@ -89,6 +90,7 @@ void write_tracks(const fs::path& path, const ChargeMotion& m) {
         .digits(p.radius, 6)
         .digits(p.spin, 6);
     if (film) table.decimals(p.u_px, 3).decimals(p.v_px, 3);
+    table.digits(p.x_se, 3).decimals(p.visible, 3).decimals(p.confidence, 3);
     table.end_line();
   }
   table.finish();
@@ -98,6 +100,12 @@ void write_occupancy(const fs::path& path, const ChargeMotion& m) {
   Table table(path, "angle_deg,occupancy");
   for (std::size_t i = 0; i < m.ring_occupancy.size(); ++i)
     table.digits(static_cast<double>(i) + 0.5, 6).decimals(m.ring_occupancy[i], 6).end_line();
+  table.finish();
+}
+
+void write_surface(const fs::path& path, const ChargeMotion& m) {
+  Table table(path, "x_m,y_m,se_m");
+  for (const SurfacePoint& p : m.surface) table.decimals(p.x, 6).decimals(p.y, 6).digits(p.se, 4).end_line();
   table.finish();
 }
 
@@ -144,6 +152,7 @@ void write_csv(const fs::path& folder, const ChargeMotion& motion) {
   write_profile(folder / "profile.csv", motion);
   write_tracks(folder / "tracks.csv", motion);
   write_occupancy(folder / "occupancy.csv", motion);
+  write_surface(folder / "surface.csv", motion);
   if (motion.source == MotionSource::kRunFile) write_torque(folder / "torque.csv", motion);
 }
 

@@ -25,6 +25,7 @@ struct Column {
   const char* name;
   const char* unit;
   T Row::*of;
+  bool later = false;  // files of earlier programs lack it
 };
 
 // One function says where everything lies; it is walked to write and to read, so the two cannot disagree.
@@ -41,7 +42,7 @@ void walk(Io& io, Motion& m) {
   io.scalar("mill/tip_radius", "m", m.tip_radius);
   io.scalar("frames/count", "", m.frames);
   io.scalar("frames/per_second", "s-1", m.frames_per_second);
-  io.scalar("frames/per_second_se", "s-1", m.frames_per_second_se);
+  io.later_scalar("frames/per_second_se", "s-1", m.frames_per_second_se);
   io.array("frames/duplicated", "", m.duplicated_frames);
   io.array("frames/dropped", "", m.dropped_frames);
   for (const MotionQuantity& q : kMotionQuantities) io.estimate(std::string("summary/") + q.name, q.unit, m.*q.of);
@@ -50,10 +51,10 @@ void walk(Io& io, Motion& m) {
   io.scalar("camera/centre_v", "px", m.camera.centre_v_px);
   io.scalar("camera/radius", "px", m.camera.radius_px);
   io.scalar("camera/metres_per_pixel", "m", m.camera.metres_per_pixel);
-  io.scalar("camera/centre_u_se", "px", m.camera.centre_u_px_se);
-  io.scalar("camera/centre_v_se", "px", m.camera.centre_v_px_se);
-  io.scalar("camera/radius_se", "px", m.camera.radius_px_se);
-  io.scalar("camera/metres_per_pixel_se", "m", m.camera.metres_per_pixel_se);
+  io.later_scalar("camera/centre_u_se", "px", m.camera.centre_u_px_se);
+  io.later_scalar("camera/centre_v_se", "px", m.camera.centre_v_px_se);
+  io.later_scalar("camera/radius_se", "px", m.camera.radius_px_se);
+  io.later_scalar("camera/metres_per_pixel_se", "m", m.camera.metres_per_pixel_se);
   io.estimate("camera/roll", "deg", m.camera.roll_deg);
   io.scalar("camera/width", "px", m.camera.width_px);
   io.scalar("camera/height", "px", m.camera.height_px);
@@ -66,7 +67,11 @@ void walk(Io& io, Motion& m) {
            Column{"time", "s", &TrackPoint::time}, Column{"x", "m", &TrackPoint::x}, Column{"y", "m", &TrackPoint::y},
            Column{"vx", "m s-1", &TrackPoint::vx}, Column{"vy", "m s-1", &TrackPoint::vy},
            Column{"radius", "m", &TrackPoint::radius}, Column{"spin", "rad s-1", &TrackPoint::spin},
-           Column{"u", "px", &TrackPoint::u_px}, Column{"v", "px", &TrackPoint::v_px});
+           Column{"u", "px", &TrackPoint::u_px}, Column{"v", "px", &TrackPoint::v_px},
+           Column{"x_se", "m", &TrackPoint::x_se, true}, Column{"visible", "", &TrackPoint::visible, true},
+           Column{"confidence", "", &TrackPoint::confidence, true});
+  io.table("surface", m.surface, Column{"x", "m", &SurfacePoint::x, true}, Column{"y", "m", &SurfacePoint::y, true},
+           Column{"se", "m", &SurfacePoint::se, true});
   io.table("torque", m.torque_series, Column{"time", "s", &TorqueRow::time},
            Column{"torque", "N m", &TorqueRow::torque}, Column{"power", "W", &TorqueRow::power});
 
@@ -89,6 +94,7 @@ struct Writer {
   void scalar(const std::string& path, const char* unit, T value) {
     hdf5::write_scalar<T>(file, path, value, unit);
   }
+  void later_scalar(const std::string& path, const char* unit, double value) { scalar(path, unit, value); }
   void estimate(const std::string& path, const char* unit, const Estimate& e) {
     scalar(path, unit, e.value);
     scalar(path + "_se", unit, e.se);
@@ -151,7 +157,11 @@ struct Reader {
   void scalar(const std::string& path, const char*, T& value) const {
     value = hdf5::read_scalar<T>(file, path);
   }
+  void later_scalar(const std::string& path, const char* unit, double& value) const {  // older files lack it
+    if (hdf5::exists(file, path)) scalar(path, unit, value);
+  }
   void estimate(const std::string& path, const char* unit, Estimate& e) const {
+    if (!hdf5::exists(file, path)) return;  // quantities are added; files of earlier programs lack them
     scalar(path, unit, e.value);
     scalar(path + "_se", unit, e.se);
   }
@@ -192,6 +202,7 @@ struct Reader {
     bool first = true;
     const auto look = [&](const auto& column) {
       const std::string name = path + "/" + column.name;
+      if (column.later && !hdf5::exists(file, name)) return;
       const std::size_t here = hdf5::count_of(hdf5::open_array(file, name), name, kMostRows);
       if (std::exchange(first, false)) count = here;
       if (here != count) throw hdf5::Failure(name + " has another length than its neighbours");
@@ -204,6 +215,7 @@ struct Reader {
       const auto read = [&](const auto& column) {
         using Value = std::decay_t<decltype(std::declval<Row>().*column.of)>;
         const std::string name = path + "/" + column.name;
+        if (column.later && !hdf5::exists(file, name)) return;
         const auto values = hdf5::read_part<Value>(hdf5::open_array(file, name), name, from, block.size());
         for (std::size_t i = 0; i < block.size(); ++i) block[i].*column.of = values[i];
       };

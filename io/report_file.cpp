@@ -50,6 +50,10 @@ constexpr Name kNames[] = {
     {"centre_of_circulation_y_m", "Centre of circulation, y"},
     {"departure_deg", "Departure from the shell"},
     {"impact_toe_deg", "Impact toe"},
+    {"surface_angle_deg", "Surface of the charge, angle of repose"},
+    {"flight_share", "In flight"},
+    {"circulation_time_s", "Time of a turn about the centre of circulation"},
+    {"granular_temperature_m2_s2", "Granular temperature of the charge"},
     {"torque_N_m", "Torque of one slice"},
     {"torque_closure_N_m", "Torque by the charge’s weight"},
 };

@@ -27,6 +27,9 @@ constexpr int kFrames = 60;
 constexpr double kStep = 0.035;  // turn per frame [rad]
 constexpr double kRate = 50;     // frames/s
 
+// Turn of a ball's painted line from frame to frame [rad]: as if neighbours geared into each other.
+double spin_of(std::size_t ball) { return kStep + 0.12 * (static_cast<double>(ball % 3) - 1); }
+
 // A bed that turns bodily with the drum, out to the shell between the lifters, and three balls in flight.
 PaintedFilm paint_film(const std::string& name, bool clockwise) {
   PaintedFilm film;
@@ -49,11 +52,13 @@ PaintedFilm paint_film(const std::string& name, bool clockwise) {
   for (int f = 0; f < kFrames; ++f) {
     std::vector<PaintedBall> here;
     const double c = std::cos(kStep * f), s = std::sin(kStep * f);
-    for (PaintedBall b : bed) {
+    for (std::size_t k = 0; k < bed.size(); ++k) {
+      PaintedBall b = bed[k];
       const double x = c * b.u - s * b.v, y = s * b.u + c * b.v;
       b.u = m.u + sense * x;
       b.v = m.v - y;
-      b.mark = clockwise ? kPi - (b.mark + kStep * f) : b.mark + kStep * f;
+      b.mark += spin_of(k) * f;
+      if (clockwise) b.mark = kPi - b.mark;
       here.push_back(b);
     }
     for (int k = 0; k < 3; ++k) {
@@ -92,7 +97,7 @@ TEST_P(Film, GivesAwayTheMillItsTurnAndItsBalls) {
   EXPECT_NEAR(motion.camera.centre_v_px, film.mill.v, 0.5);
   EXPECT_NEAR(motion.camera.metres_per_pixel, 0.001, 3.5e-5);
 
-  int found = 0, all = 0, switches = 0;
+  int found = 0, all = 0, switches = 0, spins = 0, right = 0;
   double squares = 0;
   std::map<int, std::size_t> owner;
   std::vector<std::vector<const TrackPoint*>> seen(kFrames);
@@ -108,12 +113,17 @@ TEST_P(Film, GivesAwayTheMillItsTurnAndItsBalls) {
         const bool in_bed = k < 31;  // the bed keeps its order from frame to frame
         if (in_bed && owner.count(p->id) && owner[p->id] != k) ++switches;
         if (in_bed) owner[p->id] = k;
+        if (!in_bed || std::isnan(p->spin)) continue;
+        ++spins;
+        right += std::abs(p->spin / kRate - spin_of(k)) < 0.05;
       }
     }
   EXPECT_GE(found, 0.98 * all);
   EXPECT_LE(static_cast<double>(motion.tracks.size()), 1.01 * found);
   EXPECT_LT(std::sqrt(squares / found), 0.7);  // balls of 9 px under one hard lamp
   EXPECT_EQ(switches, 0);
+  EXPECT_GT(spins, 0.3 * found);
+  EXPECT_GE(right, 0.98 * spins);
   // Mirrored where clockwise: carried balls move counter-clockwise in the mill's own frame.
   for (const TrackPoint& p : motion.tracks) {
     if (std::hypot(p.x, p.y) < 0.138 || std::isnan(p.vx)) continue;

@@ -40,8 +40,9 @@ ChargeMotion a_motion(MotionSource source) {
   for (double& o : m.ring_occupancy) o = v();
   m.ring_occupancy[17] = kNotGiven;
   m.profile = {{0, 0.0, v(), v(), v(), v()}, {1, v(), v(), kNotGiven, v(), v()}};
-  m.tracks = {{0, 4, 0.0, v(), v(), v(), v(), v(), v(), v(), v()},
-              {0, 9, 0.0, v(), v(), v(), v(), v(), kNotGiven, v(), v()}};
+  m.tracks = {{0, 4, 0.0, v(), v(), v(), v(), v(), v(), v(), v(), v(), v(), v()},
+              {0, 9, 0.0, v(), v(), v(), v(), v(), kNotGiven, v(), v(), v(), v(), kNotGiven}};
+  m.surface = {{v(), v(), v()}, {v(), v(), kNotGiven}};
   if (source == MotionSource::kRunFile) m.torque_series = {{0.005, v(), v()}, {0.01, v(), v()}};
   m.field.cell = v();
   m.field.n = 2;
@@ -66,8 +67,11 @@ std::vector<std::uint64_t> numbers_of(const ChargeMotion& m) {
   for (const auto& r : m.profile)
     for (double x : {double(r.frame), r.time, r.mill_angle_deg, r.toe_deg, r.shoulder_deg, r.head}) add(x);
   for (const auto& p : m.tracks)
-    for (double x : {double(p.frame), double(p.id), p.time, p.x, p.y, p.vx, p.vy, p.radius, p.spin, p.u_px, p.v_px})
+    for (double x : {double(p.frame), double(p.id), p.time, p.x, p.y, p.vx, p.vy, p.radius, p.spin, p.u_px, p.v_px,
+                     p.x_se, p.visible, p.confidence})
       add(x);
+  for (const auto& p : m.surface)
+    for (double x : {p.x, p.y, p.se}) add(x);
   for (const auto& r : m.torque_series)
     for (double x : {r.time, r.torque, r.power}) add(x);
   for (const auto* values : {&m.field.occupancy, &m.field.occupancy_se, &m.field.vx, &m.field.vy, &m.field.vx_se,
@@ -137,10 +141,28 @@ TEST_F(MotionFile, RefusesWhatIsNoMotion) {
 
 TEST_F(MotionFile, SummaryNamesWhatTheContractNames) {
   const auto s = nlohmann::json::parse(summary_json(a_motion(MotionSource::kFilm)));
-  for (const char* quantity :
-       {"speed_rpm", "speed_fraction", "filling", "toe_deg", "shoulder_deg", "toe_bulk_deg", "shoulder_bulk_deg",
-        "toe_outer_deg", "shoulder_outer_deg", "head_m", "centre_of_circulation_m", "departure_deg", "impact_toe_deg",
-        "mill_centre_px", "mill_radius_px", "metres_per_pixel", "roll_deg", "frames_per_second"}) {
+  for (const char* quantity : {"speed_rpm",
+                               "speed_fraction",
+                               "filling",
+                               "toe_deg",
+                               "shoulder_deg",
+                               "toe_bulk_deg",
+                               "shoulder_bulk_deg",
+                               "toe_outer_deg",
+                               "shoulder_outer_deg",
+                               "head_m",
+                               "surface_angle_deg",
+                               "flight_share",
+                               "circulation_time_s",
+                               "granular_temperature_m2_s2",
+                               "centre_of_circulation_m",
+                               "departure_deg",
+                               "impact_toe_deg",
+                               "mill_centre_px",
+                               "mill_radius_px",
+                               "metres_per_pixel",
+                               "roll_deg",
+                               "frames_per_second"}) {
     EXPECT_TRUE(s.contains(quantity)) << quantity;
     EXPECT_TRUE(s.contains(std::string(quantity) + "_se")) << quantity;
   }
@@ -178,15 +200,17 @@ TEST_F(MotionFile, TablesHaveTheContractsColumns) {
   ChargeMotion m;
   m.source = MotionSource::kFilm;
   m.profile = {{0, 0.0, 12.5, 230.25, kNotGiven, 0.125}};
-  m.tracks = {{3, 7, 0.015, 0.1234567, -0.2, 1.5, -2.5, 0.012, kNotGiven, 640.25, 359.5}};
+  m.tracks = {{3, 7, 0.015, 0.1234567, -0.2, 1.5, -2.5, 0.012, kNotGiven, 640.25, 359.5, 1.5e-4, 0.75, 0.99}};
+  m.surface = {{-0.125, -0.0625, 0.00125}};
   m.ring_occupancy.fill(0.5);
   m.ring_occupancy[1] = kNotGiven;
   write_csv(folder_, m);
   EXPECT_EQ(bytes_of(folder_ / "profile.csv"),
             "frame,time_s,mill_angle_deg,toe_deg,shoulder_deg,head_m\n0,0,12.5000,230.250,,0.125000\n");
   EXPECT_EQ(bytes_of(folder_ / "tracks.csv"),
-            "frame,time_s,id,x_m,y_m,vx_m_s,vy_m_s,radius_m,spin_rad_s,u_px,v_px\n"
-            "3,0.015,7,0.1234567,-0.2000000,1.5,-2.5,0.012,,640.250,359.500\n");
+            "frame,time_s,id,x_m,y_m,vx_m_s,vy_m_s,radius_m,spin_rad_s,u_px,v_px,x_se_m,visible,confidence\n"
+            "3,0.015,7,0.1234567,-0.2000000,1.5,-2.5,0.012,,640.250,359.500,0.00015,0.750,0.990\n");
+  EXPECT_EQ(bytes_of(folder_ / "surface.csv"), "x_m,y_m,se_m\n-0.125000,-0.062500,0.00125\n");
   const auto occupancy = lines_of(bytes_of(folder_ / "occupancy.csv"));
   ASSERT_EQ(occupancy.size(), 361u);
   EXPECT_EQ(occupancy[0], "angle_deg,occupancy");
@@ -195,10 +219,11 @@ TEST_F(MotionFile, TablesHaveTheContractsColumns) {
   EXPECT_FALSE(fs::exists(folder_ / "torque.csv"));
 
   m.source = MotionSource::kRunFile;
+  m.tracks = {{3, 7, 0.015, 0.1234567, -0.2, 1.5, -2.5, 0.012, 40.5}};
   m.torque_series = {{0.005, 10.5, 42.25}};
   write_csv(folder_, m);
   EXPECT_EQ(bytes_of(folder_ / "torque.csv"), "time_s,torque_N_m,power_W\n0.005,10.5,42.25\n");
-  EXPECT_EQ(lines_of(bytes_of(folder_ / "tracks.csv"))[1], "3,0.015,7,0.1234567,-0.2000000,1.5,-2.5,0.012,");
+  EXPECT_EQ(lines_of(bytes_of(folder_ / "tracks.csv"))[1], "3,0.015,7,0.1234567,-0.2000000,1.5,-2.5,0.012,40.5,,,");
 }
 
 }  // namespace

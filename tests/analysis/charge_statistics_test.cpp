@@ -1,0 +1,100 @@
+#include "analysis/charge_statistics.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "analysis/free_surface.h"
+#include "core/angle.h"
+#include "core/random.h"
+#include "core/units.h"
+
+namespace tumble::analysis {
+namespace {
+
+// Balls that turn bodily with the mill at omega, of which those below a straight surface are seen: it lies at
+// `slope_deg` and passes over the axis. Velocities scatter by `jitter`, uniformly.
+ChargeMotion bodily_charge(double slope_deg, double above, double omega, double jitter) {
+  MillGeometry geometry;
+  geometry.radius = geometry.tip_radius = 0.25;
+  geometry.mean_diameter = 0.016;
+  geometry.passage_frames = 10;
+  geometry.gravity = kGravity;
+  ChargeStatistics statistics(geometry);
+  Random random(7);
+  const double fps = 100, c = std::cos(radians(slope_deg)), s = std::sin(radians(slope_deg));
+  for (int f = 0; f < 300; ++f) {
+    std::vector<TrackPoint> balls;
+    int id = 0;
+    for (int row = -18; row <= 18; ++row)
+      for (int k = -18; k <= 18; ++k, ++id) {
+        const double x0 = (2 * k + (row & 1)) * 0.008, y0 = row * std::sqrt(3.0) * 0.008, turn = omega * f / fps;
+        if (std::hypot(x0, y0) > 0.242) continue;
+        TrackPoint p;
+        p.x = std::cos(turn) * x0 - std::sin(turn) * y0;
+        p.y = std::sin(turn) * x0 + std::cos(turn) * y0;
+        if (-s * p.x + c * p.y > above) continue;
+        p.frame = f;
+        p.id = id;
+        p.time = f / fps;
+        p.vx = -omega * p.y + random.uniform(-jitter, jitter);
+        p.vy = omega * p.x + random.uniform(-jitter, jitter);
+        p.radius = 0.008;
+        balls.push_back(p);
+      }
+    statistics.add(f, f / fps, 0, balls);
+  }
+  ChargeMotion motion;
+  statistics.finish(motion);
+  return motion;
+}
+
+TEST(ChargeStatistics, SurfaceAndCirculationOfABodilyTurningChargeAreKnown) {
+  const double omega = 3.7, above = 0.06, jitter = 0.3;
+  for (const double slope : {-12.0, 0.0, 34.0, 58.0}) {
+    const ChargeMotion m = bodily_charge(slope, above, omega, jitter);
+    EXPECT_NEAR(m.surface_angle_deg.value, slope, 0.7);
+    EXPECT_LT(m.surface_angle_deg.se, 0.5);
+    ASSERT_GT(m.surface.size(), 20u);
+    const double c = std::cos(radians(slope)), s = std::sin(radians(slope));
+    for (const SurfacePoint& p : m.surface) {
+      if (std::abs(c * p.x + s * p.y) > 0.2) continue;  // at its ends it meets the shell
+      // Centres end there, discs a radius later; half the occupancy lies between.
+      EXPECT_NEAR(-s * p.x + c * p.y, above, 0.008) << "at " << p.x << ", " << p.y;
+    }
+    EXPECT_LT(m.surface.front().x * c + m.surface.front().y * s, m.surface.back().x * c + m.surface.back().y * s);
+    EXPECT_NEAR(m.circulation_time.value, 2 * kPi / omega, 0.01 * 2 * kPi / omega);
+    // Two components of variance jitter^2 / 3 each, halved.
+    EXPECT_NEAR(m.granular_temperature.value, jitter * jitter / 3, 0.1 * jitter * jitter / 3);
+    EXPECT_LT(m.flight_share.value, 0.005);
+  }
+}
+
+TEST(ChargeStatistics, FlightShareIsThatOfTheBallsOnParabolas) {
+  std::vector<TrackPoint> tracks;
+  const double fps = 100, rho = 0.24, omega = 4, start = 0.2, length = 0.4;
+  for (int ball = 0; ball < 30; ++ball) {
+    const bool flies = ball < 10;
+    const double a0 = radians(40 + 3.0 * ball);
+    for (int f = 0; f <= 100; ++f) {
+      TrackPoint p;
+      p.frame = f;
+      p.id = ball;
+      p.time = f / fps;
+      p.radius = 0.012;
+      const double t = flies ? std::clamp(p.time - start, 0.0, length) : 0;
+      const double carried = omega * (flies ? std::min(p.time, start) : p.time);
+      const double a = a0 + carried;
+      p.x = rho * std::cos(a) - omega * rho * std::sin(a) * t;
+      p.y = rho * std::sin(a) + omega * rho * std::cos(a) * t - 0.5 * kGravity * t * t;
+      tracks.push_back(p);
+    }
+  }
+  Spool<TrackPoint> all;
+  all.append(tracks);
+  const Estimate share = flight_share(all, find_flights(tracks, kGravity));
+  EXPECT_NEAR(share.value, 10.0 / 30 * length * fps / 101, 0.01);
+}
+
+}  // namespace
+}  // namespace tumble::analysis
