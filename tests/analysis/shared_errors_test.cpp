@@ -16,7 +16,8 @@ constexpr double kBall = 0.01, kRadius = 0.3;
 // A bed that turns as one piece, the same in every frame but for which places are empty: from 220 to 350 degrees.
 struct Bed {
   MillGeometry geometry{kRadius, kRadius, 2 * kBall, 1, kNotGiven};
-  std::vector<std::vector<TrackPoint>> told, unseen;
+  std::vector<std::vector<TrackPoint>> told;
+  FrameSpool<TrackPoint> unseen;
   ChargeMotion motion;
 };
 
@@ -42,7 +43,7 @@ Bed a_bed(double unseen_share) {
       }
     statistics.add(f, 0.01 * f, 0, told);
     bed.told.push_back(told);
-    bed.unseen.push_back(unseen);
+    bed.unseen.append(unseen);
   }
   statistics.finish(bed.motion);
   return bed;
