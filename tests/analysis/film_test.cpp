@@ -101,7 +101,8 @@ TEST_P(Film, GivesAwayTheMillItsTurnAndItsBalls) {
   double squares = 0;
   std::map<int, std::size_t> owner;
   std::vector<std::vector<const TrackPoint*>> seen(kFrames);
-  for (const TrackPoint& p : motion.tracks) seen[static_cast<std::size_t>(p.frame)].push_back(&p);
+  const std::vector<TrackPoint> tracks = motion.tracks.read(0, motion.tracks.size());
+  for (const TrackPoint& p : tracks) seen[static_cast<std::size_t>(p.frame)].push_back(&p);
   for (int f = 0; f < kFrames; ++f)
     for (std::size_t k = 0; k < film.balls[f].size(); ++k) {
       ++all;
