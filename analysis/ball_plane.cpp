@@ -147,12 +147,14 @@ void find_circle(const std::vector<Reach>& reaches, BallPlane& plane) {
 BallPlane measure_ball_plane(const std::vector<SeenFrame>& frames, double mill_radius, const Estimate& prior) {
   std::vector<double> gaps;
   std::vector<Reach> reaches;
+  std::vector<double> sides;
 
   for (const SeenFrame& f : frames)
     for (std::size_t i = 0; i < f.balls.size(); ++i) {
       const Sighting& a = f.balls[i];
       if (a.visible < 0.85 || a.score < 0.5) continue;
       reaches.push_back({std::hypot(a.x, a.y) / (mill_radius - a.radius), std::atan2(a.y, a.x)});
+      sides.push_back((std::hypot(a.x, a.y) + a.radius) / mill_radius);
       for (std::size_t j = i + 1; j < f.balls.size(); ++j) {
         const Sighting& b = f.balls[j];
         if (b.visible < 0.85 || b.score < 0.5) continue;
@@ -163,6 +165,11 @@ BallPlane measure_ball_plane(const std::vector<SeenFrame>& frames, double mill_r
   BallPlane plane;
   plane.touching = sharp_edge(gaps, 0.85, 1.2, +1);
   find_circle(reaches, plane);
+  if (!sides.empty()) {
+    const auto outer = sides.begin() + static_cast<std::ptrdiff_t>(0.99 * static_cast<double>(sides.size()));
+    std::nth_element(sides.begin(), outer, sides.end());
+    plane.outermost = *outer;
+  }
   double weight = 0, sum = 0, squares = 0, witnesses = 0;
   const auto add = [&](const Estimate& e, double floor) {
     if (std::isnan(e.value)) return;

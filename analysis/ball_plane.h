@@ -13,8 +13,9 @@ Estimate sharp_edge(const std::vector<double>& values, double from, double to, i
 
 // What the balls say of the lengths that a camera gives: they touch at the sum of their radii, and stop at the shell.
 struct BallPlane {
-  Estimate touching;  // seen over true distance of balls that touch
-  Estimate reach;     // seen over true distance from the axis of balls that lie against the shell
+  Estimate touching;             // seen over true distance of balls that touch
+  Estimate reach;                // seen over true distance from the axis of balls that lie against the shell
+  double outermost = kNotGiven;  // how far out the balls' sides come, 99th percentile [mill radii]
   double uneven = 0;  // how badly the places where they stop in each direction lie on one circle about the axis
   Estimate factor;    // by which places are to be multiplied; touching and reach together with
                       // what was known before

@@ -11,7 +11,8 @@
 namespace tumble::analysis {
 namespace {
 
-constexpr std::size_t kSample = 400;  // frames from which lengths are told
+constexpr double kReachesShell = 0.9;  // where balls must come to, of its radius: they ride on it, or on its lifters
+constexpr std::size_t kSample = 400;   // frames from which lengths are told
 
 SeenFrame all_places_of(std::span<const FilmBall> balls, double time, const FilmScene& scene) {
   SeenFrame frame;
@@ -137,6 +138,10 @@ void settle_lengths(FilmScene& scene, const FilmPass& pass, const std::vector<do
 
   if (mill_known && sizes_known) {
     multiply_lengths(scene, plane.factor.value);
+    if (plane.outermost < kReachesShell)
+      caveats.push_back(
+          fmt::format("no ball is seen near a shell of mill.diameter {:.4g} m: check mill.diameter and charge.balls",
+                      2 * scene.radius));
     if (!std::isnan(plane.touching.value) && !std::isnan(plane.reach.value) && contradiction(plane) > 0.03)
       caveats.push_back(
           fmt::format("the balls' sizes and the mill's diameter do not fit together: by the distance at which balls "

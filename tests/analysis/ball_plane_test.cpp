@@ -64,6 +64,11 @@ TEST(BallPlane, SetsTheScaleByWhereBallsStopAndTouch) {
   }
 }
 
+TEST(BallPlane, TellsHowFarOutBallsCome) {
+  EXPECT_NEAR(measure_ball_plane(bed(1), 0.3, {1.0, 0.05}).outermost, 1, 0.003);
+  EXPECT_NEAR(measure_ball_plane(bed(1), 0.5, {1.0, 0.05}).outermost, 0.6, 0.003);
+}
+
 TEST(BallPlane, DepthBehindTheGlassIsAnError) {
   // Balls of 10 mm radius in a mill 60 mm long lie 0 to 40 mm behind where they touch the glass.
   const DepthDoubt shallow = depth_doubt(true, 0.06, 0.01, 2.0, 0.3);
