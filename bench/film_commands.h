@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <optional>
 
-// The two things that make_films makes.
+// The things that make_films makes.
 namespace tumble::films {
 
 struct PictureOrder {
@@ -22,5 +22,9 @@ struct FilmOrder {
   double seconds = 2, fps = 120;  // of the mill's own time; as recorded
 };
 void make_film(const FilmOrder& order);
+
+// What the film's mill does over `times` as long as it is filmed, beside what it does in the film: a JSON file. A film
+// is a short sample, and whoever measures it wants to know of the mill.
+void make_long_run(const FilmOrder& order, double times);
 
 }  // namespace tumble::films

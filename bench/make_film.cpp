@@ -99,8 +99,44 @@ void write_given(const fs::path& path, const FilmMill& mill, double speed_error)
   std::ofstream(path) << text << "]\n";
 }
 
+// A mill before its camera. With more seconds it is the same mill, seen for longer.
+struct Staged {
+  FilmMill mill;
+  render::FilmLook look;
+  render::FilmScene scene;
+  std::vector<double> z;  // depth of every ball [m]
+};
+
+Staged stage(const FilmOrder& order, double seconds, Random& random) {
+  if (!(seconds > 0 && order.fps >= 1)) throw InputError("--seconds, --fps", "must be above 0 and at least 1");
+  Keeping keeping;
+  keeping.seconds = seconds + 0.1;
+  keeping.states_per_second = std::max(250.0, order.fps);
+  keeping.slabs = true;
+  Staged staged;
+  staged.mill = simulate_random_mill(order.seed + 500000, keeping);
+  staged.look = render::random_look(order.seed * 977 + 5, order.level);
+  staged.look.timing.exposure = std::min(staged.look.timing.exposure, 0.9 / order.fps);
+  staged.look.timing.readout = std::min(staged.look.timing.readout, 0.95 / order.fps);
+  frame_mill(staged.look, staged.mill, order.level == 3 ? Crop::kOften : Crop::kNever, random);
+  staged.scene = scene_of(staged.mill, random.uniform() < 0.4);
+  staged.z = slab_depths_of(staged.mill, random);
+  return staged;
+}
+
+Random random_of(const FilmOrder& order) {
+  Random random(order.seed * 69069 + 17);
+  random.next();
+  return random;
+}
+
 // Toe, shoulder and the rest as the run's own truth would have them: all layers' balls together, as a camera sees them.
-ChargeMotion charge_motion_of(const FilmMill& mill, double begin, int frames, double fps) {
+// `as_if_at_glass`: where a camera puts balls that it takes to touch the glass; else where they are.
+ChargeMotion charge_motion_of(const Staged& staged, int frames, double fps, bool as_if_at_glass) {
+  const FilmMill& mill = staged.mill;
+  const double begin = mill.states[0].time + kLead;
+  Eigen::Vector3d eye = staged.look.lens.position * staged.scene.shape.radius;
+  if (staged.scene.clockwise) eye.x() = -eye.x();  // the mill is simulated counter-clockwise
   RunSetup setup;
   setup.config = mill.config;
   setup.config.run.frames_per_second = fps;
@@ -118,10 +154,11 @@ ChargeMotion charge_motion_of(const FilmMill& mill, double begin, int frames, do
     frame.mill_angle = mill.states[0].mill_angle + mill.mill_speed * (begin + frame.time - mill.states[0].time);
     for (std::size_t i = 0; i < mill.radius.size(); ++i) {
       const BallState b = state_at(mill, i, begin + frame.time);
-      frame.x.push_back(b.x);
-      frame.y.push_back(b.y);
-      frame.vx.push_back(b.vx);
-      frame.vy.push_back(b.vy);
+      const double k = as_if_at_glass ? (eye.z() + mill.radius[i]) / (eye.z() - staged.z[i]) : 1.0;
+      frame.x.push_back(eye.x() + (b.x - eye.x()) * k);
+      frame.y.push_back(eye.y() + (b.y - eye.y()) * k);
+      frame.vx.push_back(b.vx * k);
+      frame.vy.push_back(b.vy * k);
       frame.angle.push_back(b.angle);
       frame.spin.push_back(b.spin);
     }
@@ -143,21 +180,9 @@ void write_rows(std::ofstream& csv, std::size_t frame, const render::FilmPicture
 }  // namespace
 
 void make_film(const FilmOrder& order) {
-  if (!(order.seconds > 0 && order.fps >= 1)) throw InputError("--seconds, --fps", "must be above 0 and at least 1");
-  Random random(order.seed * 69069 + 17);
-  random.next();
-  Keeping keeping;
-  keeping.seconds = order.seconds + 0.1;
-  keeping.states_per_second = std::max(250.0, order.fps);
-  keeping.slabs = true;
-  const FilmMill mill = simulate_random_mill(order.seed + 500000, keeping);
-
-  render::FilmLook look = render::random_look(order.seed * 977 + 5, order.level);
-  look.timing.exposure = std::min(look.timing.exposure, 0.9 / order.fps);
-  look.timing.readout = std::min(look.timing.readout, 0.95 / order.fps);
-  frame_mill(look, mill, order.level == 3 ? Crop::kOften : Crop::kNever, random);
-  const render::FilmScene scene = scene_of(mill, random.uniform() < 0.4);
-  const std::vector<double> z = slab_depths_of(mill, random);
+  Random random = random_of(order);
+  const Staged staged = stage(order, order.seconds, random);
+  const auto& [mill, look, scene, z] = staged;
   const int frames = static_cast<int>(order.seconds * order.fps);
   const TimeBase base = random_time_base(frames, order.fps, order.level, random);
 
@@ -229,7 +254,7 @@ void make_film(const FilmOrder& order) {
                                  {"camera", json_of(look.lens, scene.shape.radius)},
                                  {"look", json_of(look)}};
   if (sway > 0) json["shake_px"] = shakes;
-  const ChargeMotion motion = charge_motion_of(mill, mill.states[0].time + kLead, frames, order.fps);
+  const ChargeMotion motion = charge_motion_of(staged, frames, order.fps, false);
   const auto known = [](double value) {
     return std::isnan(value) ? nlohmann::ordered_json() : nlohmann::ordered_json(value);
   };
@@ -250,6 +275,28 @@ void make_film(const FilmOrder& order) {
   }
   std::ofstream(stem.string() + ".truth.json") << json.dump(1) << '\n';
   if (!csv.flush()) throw WorkError(stem.string() + ".truth.csv", "could not be written");
+}
+
+void make_long_run(const FilmOrder& order, double times) {
+  Random random = random_of(order);
+  const Staged staged = stage(order, times * order.seconds, random);
+  nlohmann::ordered_json json = {
+      {"seed", order.seed}, {"fps", order.fps}, {"seconds", order.seconds}, {"times", times}};
+  for (const auto& [name, seconds] : {std::pair{"film", order.seconds}, std::pair{"long", times * order.seconds}}) {
+    const ChargeMotion m = charge_motion_of(staged, static_cast<int>(seconds * order.fps), order.fps, true);
+    for (const auto& [key, e] :
+         {std::pair{"toe_deg", m.toe_deg}, std::pair{"shoulder_deg", m.shoulder_deg},
+          std::pair{"toe_bulk_deg", m.toe_bulk_deg}, std::pair{"shoulder_bulk_deg", m.shoulder_bulk_deg},
+          std::pair{"toe_outer_deg", m.toe_outer_deg}, std::pair{"shoulder_outer_deg", m.shoulder_outer_deg},
+          std::pair{"departure_deg", m.departure_deg}, std::pair{"impact_toe_deg", m.impact_toe_deg},
+          std::pair{"head_m", m.head}, std::pair{"centre_of_circulation_x_m", m.centre_of_circulation_x},
+          std::pair{"centre_of_circulation_y_m", m.centre_of_circulation_y}}) {
+      json[name][key] = std::isnan(e.value) ? nlohmann::ordered_json() : nlohmann::ordered_json(e.value);
+      json[name][std::string(key) + "_se"] = std::isnan(e.se) ? nlohmann::ordered_json() : nlohmann::ordered_json(e.se);
+    }
+  }
+  std::ofstream out(order.file);
+  if (!(out << json.dump(1) << '\n').flush()) throw WorkError(order.file.string(), "could not be written");
 }
 
 }  // namespace tumble::films
