@@ -1,7 +1,9 @@
 #include "analysis/flights.h"
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 
 #include "core/angle.h"
@@ -43,36 +45,62 @@ Polynomial fit_parabola(std::span<const TrackPoint> p, double t0, Get get) {
   return r;
 }
 
-// A fall with gravity known: straight lines in x and in y + g t^2 / 2.
+// A fall under a gravity that is known but for what scale, clock and roll are wrong by.
 struct Fall {
-  double t0 = 0, x = 0, vx = 0, y = 0, vy = 0, g = 0;
-  double miss(const TrackPoint& p) const {
-    const double t = p.time - t0;
-    return std::hypot(p.x - x - vx * t, p.y - y - vy * t + 0.5 * g * t * t);
-  }
+  double t0 = 0, x = 0, vx = 0, ax = 0, y = 0, vy = 0, ay = 0;
+  double x_at(double time) const { return x + (vx + 0.5 * ax * (time - t0)) * (time - t0); }
+  double y_at(double time) const { return y + (vy + 0.5 * ay * (time - t0)) * (time - t0); }
+  double miss(const TrackPoint& p) const { return std::hypot(p.x - x_at(p.time), p.y - y_at(p.time)); }
 };
 
-Fall fit_fall(std::span<const TrackPoint> p, double g) {
+// `off`: standard deviation of a place. Of a short flight gravity is taken as it is; a long one would leave a parabola
+// whose gravity is off by a hundredth long before it lands.
+Fall fit_fall(std::span<const TrackPoint> p, double g, double off) {
+  constexpr double kDoubt = 0.03;  // of gravity, in each direction
   Fall f;
-  f.g = g;
   f.t0 = 0.5 * (p.front().time + p.back().time);
-  double n = 0, st = 0, stt = 0, sx = 0, sxt = 0, sy = 0, syt = 0;
+  Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
+  Eigen::Matrix<double, 3, 2> right = Eigen::Matrix<double, 3, 2>::Zero();
   for (const TrackPoint& q : p) {
-    const double t = q.time - f.t0, y = q.y + 0.5 * g * t * t;
+    const double t = q.time - f.t0;
+    const Eigen::Vector3d basis(1, t, 0.5 * t * t);
+    normal += basis * basis.transpose();
+    right += basis * Eigen::RowVector2d(q.x, q.y + 0.5 * g * t * t);
+  }
+  normal(2, 2) += std::pow(off / (kDoubt * g), 2);
+  const Eigen::Matrix<double, 3, 2> way = normal.ldlt().solve(right);
+  f.x = way(0, 0);
+  f.vx = way(1, 0);
+  f.ax = way(2, 0);
+  f.y = way(0, 1);
+  f.vy = way(1, 1);
+  f.ay = way(2, 1) - g;
+  return f;
+}
+
+// When a ball whose last place on its fall is at `first` began to fall. What carried it let go at once, so that before,
+// it strays from the fall with the square of time; a tenth of a radius is some hundredths of a second, in which a mill
+// turns by degrees.
+double start_of(const Fall& fall, std::span<const TrackPoint> p, std::size_t first, std::size_t from,
+                double tolerance) {
+  constexpr double kFar = 16;         // tolerances, up to which strays follow that law
+  constexpr std::size_t kPlaces = 8;  // looked at
+  const double until = p[first].time;
+  double n = 0, st = 0, sr = 0, stt = 0, str = 0;
+  for (std::size_t k = first; k-- > from && first - k <= kPlaces;) {
+    const double miss = fall.miss(p[k]), t = p[k].time - until;
+    if (miss > kFar * tolerance) break;
+    if (miss < tolerance) continue;
+    const double root = std::sqrt(miss);
     n += 1;
     st += t;
+    sr += root;
     stt += t * t;
-    sx += q.x;
-    sxt += q.x * t;
-    sy += y;
-    syt += y * t;
+    str += t * root;
   }
-  const double d = n * stt - st * st;
-  f.vx = (n * sxt - st * sx) / d;
-  f.x = (sx - f.vx * st) / n;
-  f.vy = (n * syt - st * sy) / d;
-  f.y = (sy - f.vy * st) / n;
-  return f;
+  const double spread = n * stt - st * st, slope = spread > 0 ? (n * str - st * sr) / spread : 0;
+  if (!(slope < 0)) return until;
+  return until + std::max(0.0, (st - sr / slope) / n);
 }
 
 // What blurs the places, along one axis: third differences of neighbouring sightings hold next to nothing else.
@@ -144,15 +172,26 @@ void flights_of_ball(std::span<const TrackPoint> p, double g, const Blur& blur, 
       Fall fall;
       const auto on = [&](std::size_t k) { return k < n && fall.miss(p[k]) < tolerance; };
       for (int round = 0; round < 4 && last >= first + 2; ++round) {  // a longer flight is a better parabola
-        fall = fit_fall(p.subspan(first, last + 1 - first), g);
+        fall = fit_fall(p.subspan(first, last + 1 - first), g, tolerance / 3.5);
         while (first > free_from && (on(first - 1) || (first > free_from + 1 && on(first - 2)))) --first;
         while (last + 1 < n && (on(last + 1) || on(last + 2))) ++last;
         while (first < last && !on(first)) ++first;
         while (last > first && !on(last)) --last;
       }
-      if (p[last].time - p[first].time >= kLeastFlight - 1e-9)
-        flights.push_back({p[i].id, p[first].time, p[last].time, p[first].x, p[first].y, p[last].x, p[last].y,
-                           first > 0, last + 1 < n});
+      if (p[last].time - p[first].time >= kLeastFlight - 1e-9) {
+        const bool whole_start = first > 0;
+        const double hugging = std::atan2(p[first].y, p[first].x);
+        double start = p[first].time;
+        for (int round = 0; round < 3; ++round) {  // places that hug the fall before it begins bend it
+          start =
+              std::max(start, std::min(start_of(fall, p, first, free_from, tolerance), p[last].time - kLeastFlight));
+          while (first + 3 < last && p[first].time < start) ++first;
+          fall = fit_fall(p.subspan(first, last + 1 - first), g, tolerance / 3.5);
+        }
+        const double x = fall.x_at(start), y = fall.y_at(start);
+        flights.push_back({p[i].id, start, p[last].time, x, y, p[last].x, p[last].y, whole_start, last + 1 < n,
+                           wrap_180(degrees(std::atan2(y, x) - hugging))});
+      }
       free_from = end = std::max(end, last + 1);
     }
     i = end;
@@ -192,16 +231,54 @@ Estimate median_direction(const std::vector<double>& directions) {
   return e;
 }
 
-// The longer a flight, the more likely that it is lost on the way: by how much the median would move if those that were
-// had landed farther round than half of the others.
-double shift_by_lost(const std::vector<double>& directions, std::size_t lost) {
-  if (directions.empty()) return 0;
-  const double median = median_direction(directions).value;
-  std::vector<double> beyond;
-  for (const double d : directions) beyond.push_back(wrap_180(d - median));
-  std::sort(beyond.begin(), beyond.end());
-  const std::size_t n = beyond.size();
-  return beyond[std::min(n - 1, (n + lost) / 2)] - beyond[n / 2];
+struct Landing {
+  double angle = 0;     // from a common origin, along the flights [degrees]
+  bool landed = false;  // else lost on the way, here
+};
+
+// Median of landings of which some are only known to lie beyond where the flight was lost (Kaplan & Meier 1958): the
+// longer a flight, the more likely it is lost, so that those seen to land tell of the short ones. NaN where too many
+// were lost.
+double median_landing(std::vector<Landing>& landings) {
+  std::sort(landings.begin(), landings.end(), [](const Landing& a, const Landing& b) {
+    return a.angle != b.angle ? a.angle < b.angle : a.landed && !b.landed;
+  });
+  constexpr double kHalf = 0.5 + 1e-9;
+  double flying = 1, at_half = kNotGiven;
+  for (std::size_t i = 0; i < landings.size(); ++i) {
+    if (!landings[i].landed) continue;
+    if (!std::isnan(at_half)) return 0.5 * (at_half + landings[i].angle);  // an even number: between the middle two
+    flying *= 1 - 1 / static_cast<double>(landings.size() - i);
+    if (flying > kHalf) continue;
+    if (flying < 1 - kHalf) return landings[i].angle;
+    at_half = landings[i].angle;
+  }
+  return at_half;
+}
+
+Estimate impact_of(std::vector<Landing> landings, double origin_deg) {
+  const double median = median_landing(landings);
+  if (std::isnan(median)) return {};
+  Estimate e{wrap_360(origin_deg + median), kNotGiven};
+  if (landings.size() < 8) return e;
+  Random random(3);
+  double sum = 0, squares = 0, n = 0;
+  constexpr int kReplicates = 200;
+  std::vector<Landing> sample;
+  for (int r = 0; r < kReplicates; ++r) {
+    sample.clear();
+    for (std::size_t k = 0; k < landings.size(); ++k) sample.push_back(landings[random.below(landings.size())]);
+    double m = median_landing(sample);
+    if (std::isnan(m)) m = sample.back().angle;  // where the last one was lost, at least
+    sum += m;
+    squares += m * m;
+    n += 1;
+  }
+  // Where flights are lost need not be by chance: half of what they move the median by.
+  std::vector<Landing> seen;
+  std::copy_if(landings.begin(), landings.end(), std::back_inserter(seen), [](const Landing& l) { return l.landed; });
+  e.se = std::hypot(std::sqrt(std::max(0.0, squares - sum * sum / n) / (n - 1)), 0.5 * (median - median_landing(seen)));
+  return e;
 }
 
 }  // namespace
@@ -243,17 +320,30 @@ std::vector<Flight> FlightLog::finish() {
 }
 
 FlightAngles flight_angles(std::span<const Flight> flights, double shell_reach, double least_length) {
-  std::vector<double> departures, impacts;
-  std::size_t lost = 0;  // in flight: where they end was not seen
+  // What carried a ball may let go at once, or fade: it then strays with the cube of time, and the start lies 0.4 of
+  // the way back to where it hugs the parabola; anything between is as likely.
+  constexpr double kFades = 0.4 / 3.464;
+  std::vector<double> departures, hugged;
+  std::vector<const Flight*> worthy;
   for (const Flight& f : flights) {
     if (!f.whole_start || std::hypot(f.start_x, f.start_y) < shell_reach) continue;
-    lost += !f.whole_end;
     if (std::hypot(f.end_x - f.start_x, f.end_y - f.start_y) < least_length) continue;
     departures.push_back(wrap_360(degrees(std::atan2(f.start_y, f.start_x))));
-    if (f.whole_end) impacts.push_back(wrap_360(degrees(std::atan2(f.end_y, f.end_x))));
+    hugged.push_back(f.hugged);
+    worthy.push_back(&f);
   }
-  FlightAngles angles{median_direction(departures), median_direction(impacts)};
-  angles.impact_toe_deg.se = std::hypot(angles.impact_toe_deg.se, shift_by_lost(impacts, lost));
+  FlightAngles angles{median_direction(departures), {}};
+  if (!hugged.empty()) {
+    const auto middle = hugged.begin() + static_cast<std::ptrdiff_t>(hugged.size() / 2);
+    std::nth_element(hugged.begin(), middle, hugged.end());
+    angles.departure_deg.se = std::hypot(angles.departure_deg.se, kFades * *middle);
+  }
+  constexpr double kBefore = 60;  // by which flights may end short of where they usually begin [degrees]
+  const double origin = angles.departure_deg.value - kBefore;
+  std::vector<Landing> landings;
+  for (const Flight* f : worthy)
+    landings.push_back({wrap_360(degrees(std::atan2(f->end_y, f->end_x)) - origin), f->whole_end});
+  angles.impact_toe_deg = impact_of(std::move(landings), origin);
   return angles;
 }
 

@@ -12,6 +12,7 @@ struct Flight {  // one ball in free fall, from its first to its last moment on 
   double start_x = 0, start_y = 0;              // [m]
   double end_x = 0, end_y = 0;                  // [m]
   bool whole_start = false, whole_end = false;  // false where the track begins or ends in flight
+  double hugged = 0;  // degrees round the axis before the start, in which places are hardly off the parabola already
 };
 
 // Flights in tracks (any order of rows), found by their acceleration: a parabola with gravity `g` straight down that

@@ -61,7 +61,7 @@ TEST_P(Flights, StartWhereTheBallLeavesTheShellAndEndWhereItLands) {
   const FlightAngles angles = flight_angles(flights, 0.2, 0.1);
   const double frame = degrees(4.2 / GetParam().fps);  // the ball's turn in a frame
   // It hugs the circle at first, the longer the more places are blurred.
-  EXPECT_NEAR(angles.departure_deg.value, 50, 3 * frame + 3 + 3e3 * GetParam().noise);
+  EXPECT_NEAR(angles.departure_deg.value, 50, 2 * frame + 1 + 1e3 * GetParam().noise);
   EXPECT_NEAR(wrap_180(angles.impact_toe_deg.value - land), 0, 3 * frame);
 }
 
@@ -69,17 +69,51 @@ INSTANTIATE_TEST_SUITE_P(Rates, Flights,
                          ::testing::Values(Filming{60, 2e-4}, Filming{200, 2e-4}, Filming{100, 1.5e-3},
                                            Filming{200, 1.5e-3}));
 
-TEST(Flights, LostOnTheWayAreAnErrorOfTheImpact) {
-  std::vector<Flight> flights;
-  for (int i = 0; i < 20; ++i) {
-    const double end = radians(180 + 2 * i);
-    flights.push_back({i, 0, 0.3, 0.2, 0.1, 0.25 * std::cos(end), 0.25 * std::sin(end), true, true});
+// A ball held up on its circle until `leave_deg` and let go there, as balls on a lifter's side are.
+TEST(Flights, BeginWhereTheBallIsLetGoNotWhereItsWayFirstLooksLikeAFall) {
+  double land = 0;
+  std::vector<double> misses;
+  for (double leave = 40; leave < 70; leave += 0.5) {
+    const auto flights = find_flights(cataract(leave, 4.2, 120, 3e-4, land), kGravity);
+    ASSERT_EQ(flights.size(), 1u);
+    misses.push_back(degrees(std::atan2(flights[0].start_y, flights[0].start_x)) - leave);
   }
-  const FlightAngles all_seen = flight_angles(flights, 0.2, 0.1);
-  for (int i = 0; i < 10; ++i) flights.push_back({20 + i, 0, 0.1, 0.2, 0.1, 0.1, 0.2, true, false});
-  const FlightAngles some_lost = flight_angles(flights, 0.2, 0.05);
-  EXPECT_EQ(some_lost.impact_toe_deg.value, all_seen.impact_toe_deg.value);
-  EXPECT_NEAR(some_lost.impact_toe_deg.se, std::hypot(all_seen.impact_toe_deg.se, 10), 0.5);
+  double mean = 0;
+  for (double m : misses) mean += m / static_cast<double>(misses.size());
+  EXPECT_NEAR(mean, 0, 1.5);  // half a frame; a tenth of a radius from the fall it was -4 and more
+}
+
+// Lengths 3 % too large, or a clock that is 1.5 % off: the flight is still one, and ends where the ball lands.
+TEST(Flights, AreWholeWhereTheScaleIsOff) {
+  double land = 0;
+  auto track = cataract(60, 4.2, 120, 1e-4, land);
+  for (TrackPoint& p : track) {
+    p.x *= 1.03;
+    p.y *= 1.03;
+    p.radius = 0.006;
+  }
+  const auto flights = find_flights(track, kGravity);
+  ASSERT_EQ(flights.size(), 1u);
+  EXPECT_NEAR(wrap_180(degrees(std::atan2(flights[0].end_y, flights[0].end_x)) - land), 0, 2 * degrees(4.2 / 120));
+}
+
+// Landings spread evenly over 100 to 200 degrees, of which each is lost on the way with the same chance per degree:
+// most of the far ones.
+TEST(Flights, LostOnTheWayDoNotShortenTheImpact) {
+  Random random(5);
+  std::vector<Flight> flights;
+  double lost = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const double end = random.uniform(100, 200), until = 60 - 100 * std::log(1 - random.uniform());
+    const double seen = radians(std::min(end, until));
+    flights.push_back({i, 0, 0.3, 0.2 * std::cos(1.0), 0.2 * std::sin(1.0), 0.25 * std::cos(seen),
+                       0.25 * std::sin(seen), true, end < until});
+    lost += end >= until;
+  }
+  ASSERT_GT(lost, 1000);
+  const Estimate impact = flight_angles(flights, 0.2, 0.01).impact_toe_deg;
+  EXPECT_NEAR(impact.value, 150, 2 * impact.se);
+  EXPECT_LT(impact.se, 8);
 }
 
 TEST(Flights, AreNotSeenInACarriedCharge) {
