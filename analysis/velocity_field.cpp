@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "analysis/free_surface.h"
+#include "core/statistics.h"
 
 namespace tumble::analysis {
 namespace {
@@ -188,20 +189,17 @@ FieldStatistics::Centre FieldStatistics::centre_of_circulation(double reach) con
   best.y.value = found.y();
   const auto batches = sums_.batches(kBatches);
   if (batches.size() < 4) return best;
-  Eigen::Vector2d sum = Eigen::Vector2d::Zero(), squares = Eigen::Vector2d::Zero();
-  double n = 0;
-  for (const auto& b : batches) {  // how far each batch would move the root, linearised
+  std::vector<double> along_x, along_y;  // a charge goes round many times slower than frames follow: batches are alike
+  for (const auto& b : batches) {        // how far each batch would move the root, linearised
     const Plane p = fit_plane(b, cell_, found.x(), found.y(), reach);
     if (!p.known) continue;
     const Eigen::Vector2d d = -slope.inverse() * p.coefficients.row(0).transpose();
-    sum += d;
-    squares += d.cwiseProduct(d);
-    n += 1;
+    along_x.push_back(d.x());
+    along_y.push_back(d.y());
   }
-  if (n < 4) return best;
-  const Eigen::Vector2d variance = (squares - sum.cwiseProduct(sum) / n) / (n * (n - 1));
-  best.x.se = std::sqrt(std::max(0.0, variance.x()));
-  best.y.se = std::sqrt(std::max(0.0, variance.y()));
+  if (along_x.size() < 4) return best;
+  best.x.se = mean_of_series(along_x).se;
+  best.y.se = mean_of_series(along_y).se;
   return best;
 }
 
