@@ -20,13 +20,14 @@ double head_of(std::span<const TrackPoint> balls) {
   return y[low] + (at - static_cast<double>(low)) * (y[high] - y[low]);
 }
 
-Estimate filling_of_deep_mill(const Field& field, double mill_radius) {
-  constexpr double kError = 0.15;  // of slices simulated side by side
+Estimate filling_of_deep_mill(const Field& field, double mill_radius, double layers) {
   std::vector<double> dense;
-  double covered = 0, most = 0;
+  double covered = 0, scattered = 0, most = 0;
   for (const double o : field.occupancy)
     if (!std::isnan(o)) {
       covered += o * field.cell * field.cell;
+      const double each = 1 - std::pow(std::max(0.0, 1 - o), 1 / layers);  // share that one layer covers
+      scattered += std::min(1.0, each / kSettledAreaShare) * field.cell * field.cell;
       most = std::max(most, o);
     }
   for (const double o : field.occupancy)
@@ -34,8 +35,9 @@ Estimate filling_of_deep_mill(const Field& field, double mill_radius) {
   if (dense.empty()) return {};
   const auto at = dense.begin() + static_cast<std::ptrdiff_t>(0.9 * static_cast<double>(dense.size() - 1));
   std::nth_element(dense.begin(), at, dense.end());
-  const double filling = covered / (*at * kPi * mill_radius * mill_radius);
-  return {filling, kError * filling};
+  const double cross_section = kPi * mill_radius * mill_radius;
+  const double high = covered / *at / cross_section, low = std::min(high, scattered / cross_section);
+  return {0.5 * (low + high), (high - low) / std::sqrt(12.0)};
 }
 
 ChargeStatistics::ChargeStatistics(const MillGeometry& geometry)

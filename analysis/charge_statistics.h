@@ -48,9 +48,10 @@ class ChargeStatistics {
   std::optional<FlightLog> flights_;  // none where length or clock is unknown
 };
 
-// Filling of a mill in which balls lie behind one another: what the charge covers, where it lies dense, is the mill's
-// whole cross-section; balls in flight cover more than they are, which the error knows.
-Estimate filling_of_deep_mill(const Field& field, double mill_radius);
+// Filling of a mill in which `layers` of balls lie behind one another, of which a camera sees what is covered. At most,
+// wherever something is seen, all layers are full; at least, every layer is covered by chance, as by balls in flight.
+// The truth may lie anywhere between.
+Estimate filling_of_deep_mill(const Field& field, double mill_radius, double layers);
 
 // 99th percentile, linear between order statistics; NaN of nothing.
 double head_of(std::span<const TrackPoint> balls);

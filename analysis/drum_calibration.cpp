@@ -291,10 +291,13 @@ Camera fit_camera(const Sample& sample, const DrumPose& start, const PolarGrid& 
     DrumPose at_once = camera.fit.pose;
     at_once.numbers[DrumPose::kTwist] = 0;
     prior.deviation[DrumPose::kTwist] = kNoTwist * std::abs(turn.step);
-    // That it is none is supposed, not seen: the errors stay those of a readout that is free.
+    // That it is none is supposed, not seen: the errors are those of a readout that is free, and what the supposition
+    // has moved the camera by, for a readout just too short to be clear is set aside as well.
     const auto covariance = camera.fit.covariance;
+    const DrumPose::Numbers free = camera.fit.pose.numbers;
     camera.fit = fit_pose(last, at_once, camera.fit.angles, camera.fit.depths, prior);
-    camera.fit.covariance = covariance;
+    const DrumPose::Numbers moved = camera.fit.pose.numbers - free;
+    camera.fit.covariance = covariance + moved * moved.transpose();
   }
   camera.found = true;
   return camera;

@@ -42,12 +42,20 @@ DrumAngle DrumReader::angle_near(const cv::Mat& strip, double expected, double r
   return refined(moving, analysis::angle_near(pattern_, RoundSpectrum(moving), expected, reach));
 }
 
+double DrumReader::alike() const {
+  constexpr double kAlike = 0.2;  // as light may shift a texture where the camera is fitted [px]
+  double radius = 0;
+  for (int k = 0; k < texture_->pieces(); ++k) radius += texture_->piece(k).radius / texture_->pieces();
+  return radius > 0 ? kAlike / radius : 0.0;
+}
+
 DrumAngle DrumReader::refined(const cv::Mat& moving, double rough) const {
   const double pitch = unroll_.grid().pitch();
   DrumAngle result{rough, kNotGiven, 0};
   const auto found = texture_->find(moving, rough);
   struct Say {
     double turn, weight;
+    std::size_t part;
   };
   std::vector<Say> says;
   for (int k = 0; k < texture_->pieces(); ++k) {
@@ -55,15 +63,20 @@ DrumAngle DrumReader::refined(const cv::Mat& moving, double rough) const {
     if (!f.seen) continue;
     const double r = texture_->piece(k).radius;
     // Across alone, whatever the shift along the radius: the camera is known by now, but a layer's depth need not be.
-    says.push_back({f.across / r, (f.weight(1, 1) - f.weight(0, 1) * f.weight(1, 0) / f.weight(0, 0)) * r * r});
+    says.push_back({f.across / r, (f.weight(1, 1) - f.weight(0, 1) * f.weight(1, 0) / f.weight(0, 0)) * r * r,
+                    static_cast<std::size_t>(k % DrumTexture::kPieces) * DrumAngle::kParts / DrumTexture::kPieces});
   }
   if (says.size() < 4) return result;
   double middle = 0, scale = 1e300;
   std::vector<double> misses(says.size());
+  const auto say_of = [&](const Say& s) {
+    const double k = (s.turn - middle) / (4 * scale);
+    return std::abs(k) < 1 ? s.weight * (1 - k * k) * (1 - k * k) : 0.0;
+  };
   for (int round = 0; round < 8; ++round) {
     double sum = 0, weights = 0;
     for (const Say& s : says) {
-      const double k = (s.turn - middle) / (4 * scale), w = std::abs(k) < 1 ? s.weight * (1 - k * k) * (1 - k * k) : 0;
+      const double w = say_of(s);
       sum += w * s.turn;
       weights += w;
     }
@@ -77,6 +90,17 @@ DrumAngle DrumReader::refined(const cv::Mat& moving, double rough) const {
         std::count_if(says.begin(), says.end(), [&](const Say& s) { return std::abs(s.turn - middle) < 4 * scale; }));
     // Pieces of a band overlap by half: neighbours do not err independently.
     result.error = scale * std::sqrt(2.0 / std::max(1, result.pieces));
+  }
+  std::array<double, DrumAngle::kParts> sum{}, weights{};
+  for (const Say& s : says) {
+    const double w = say_of(s);
+    sum[s.part] += w * (s.turn - middle);
+    weights[s.part] += w;
+  }
+  for (std::size_t part = 0; part < DrumAngle::kParts; ++part) {
+    if (!(weights[part] > 0)) continue;
+    result.part_turn[part] = static_cast<float>(sum[part] / weights[part]);
+    result.part_say[part] = static_cast<float>(weights[part]);
   }
   // The texture was looked for at whole columns.
   result.angle = static_cast<double>(std::lround(rough / pitch)) * pitch + middle;

@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <memory>
 #include <vector>
 
@@ -13,6 +14,10 @@ struct DrumAngle {
   double angle = 0;
   double error = kNotGiven;  // standard error; NaN where the drum's texture was not found in the picture
   int pieces = 0;            // of the texture that were found
+
+  // What each part of the drum says by itself, an eighth of the round each.
+  static constexpr std::size_t kParts = 8;
+  std::array<float, kParts> part_turn{}, part_say{};  // beyond `angle` [rad]; weight, 0 where it was not found
 };
 
 // A grey picture, 8 bit, of 1/`times` the size along each side.
@@ -31,6 +36,9 @@ class DrumReader {
 
   // Within `reach` of an angle that is known roughly [rad].
   DrumAngle angle_near(const cv::Mat& strip, double expected, double reach) const;
+  // By how much all that is seen in one direction errs alike, at least [rad].
+  double alike() const;
+
   const Unroller& unroll() const { return unroll_; }
   const StillPart& still() const { return *still_; }
   const DrumTexture& texture() const { return *texture_; }

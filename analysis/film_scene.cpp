@@ -125,7 +125,9 @@ void settle_lengths(FilmScene& scene, const FilmPass& pass, const std::vector<do
 
   std::vector<SeenFrame> sample = sample_of(pass, scene);
   for (SeenFrame& frame : sample) drop_beyond(frame, scene.radius);
-  scene.one_layer = in_one_layer(sample);
+  // Few balls do not show it; but in so short a mill none can hide another's middle.
+  const double smallest = *std::min_element(scene.radii.begin(), scene.radii.end());
+  scene.one_layer = in_one_layer(sample) || mill_length / scene.metres < (2 + std::sqrt(3.0)) * smallest;
   DepthDoubt depth;
   if (!scene.from_afar) {
     double usual = 0;

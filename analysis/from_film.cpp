@@ -8,6 +8,7 @@
 #include "analysis/ballistics.h"
 #include "analysis/charge_motion.h"
 #include "analysis/charge_statistics.h"
+#include "analysis/drum_speed.h"
 #include "analysis/film_findings.h"
 #include "analysis/film_paths.h"
 #include "analysis/film_reader.h"
@@ -57,23 +58,6 @@ BallLook look_at_balls(BallNet& net, const std::vector<cv::Mat>& sample, const s
   return other;
 }
 
-// Slope of the drum's angle over time, its error allowing for correlation.
-Estimate turn_per_frame(const std::vector<double>& time, const std::vector<double>& angle) {
-  const double n = static_cast<double>(angle.size());
-  if (n < 3) return {};
-  double st = 0, stt = 0, sa = 0, sta = 0;
-  for (std::size_t i = 0; i < angle.size(); ++i) {
-    st += time[i];
-    stt += time[i] * time[i];
-    sa += angle[i];
-    sta += time[i] * angle[i];
-  }
-  const double slope = (n * sta - st * sa) / (n * stt - st * st);
-  std::vector<double> residual;
-  for (std::size_t i = 0; i < angle.size(); ++i) residual.push_back(angle[i] - sa / n - slope * (time[i] - st / n));
-  return {slope, mean_of_series(residual).se / std::sqrt(std::max(1e-12, stt / n - st * st / (n * n)))};
-}
-
 // Which recorded picture each frame of the file is. Repeats are not linked: each takes over what the frame before it
 // shows.
 struct Timeline {
@@ -83,7 +67,7 @@ struct Timeline {
   Estimate turn;                    // of the drum per recorded frame, as seen [rad]
 };
 
-Timeline timeline_of(const FilmPass& pass, double sense_seen) {
+Timeline timeline_of(const FilmPass& pass, const DrumView& drum, double sense_seen) {
   std::vector<double> angles;
   for (const DrumAngle& d : pass.drum) angles.push_back(sense_seen * d.angle);
   FrameEvidence evidence;
@@ -91,18 +75,17 @@ Timeline timeline_of(const FilmPass& pass, double sense_seen) {
   evidence.angle = angles;
   Timeline line;
   line.clock = find_frame_clock(evidence);
-  std::vector<double> times, turned;
+  std::vector<double> times;
+  std::vector<DrumAngle> turned;
   for (std::size_t f = 0; f < pass.frames(); ++f) {
     if (f == 0 || line.clock.source[f] != line.clock.source[f - 1]) {
       line.shown.push_back(f);
-      if (!std::isnan(pass.drum[f].error)) {
-        times.push_back(line.clock.source[f]);
-        turned.push_back(pass.drum[f].angle);
-      }
+      times.push_back(line.clock.source[f]);
+      turned.push_back(pass.drum[f]);
     }
     line.row_of.push_back(line.shown.size() - 1);
   }
-  line.turn = turn_per_frame(times, turned);
+  line.turn = turn_of_drum(times, turned, drum.reader != nullptr ? drum.reader->alike() : 0.0);
   return line;
 }
 
@@ -268,6 +251,19 @@ FilmFindings findings_of(const FilmScene& scene, const FilmPass& pass, double ro
   return findings;
 }
 
+// Share of the mill's cross-section that lies beyond the picture's edges.
+double share_beyond_picture(const FilmScene& scene) {
+  constexpr int kRings = 20, kDirections = 72;
+  int beyond = 0;
+  for (int i = 0; i < kRings; ++i)
+    for (int k = 0; k < kDirections; ++k) {
+      const double r = scene.radius * std::sqrt((i + 0.5) / kRings), a = 2 * kPi * k / kDirections;
+      const cv::Point2d p = picture_of(scene.drum.camera, {r * std::cos(a), r * std::sin(a), 0});
+      beyond += p.x < 0 || p.y < 0 || p.x > scene.drum.camera.width - 1 || p.y > scene.drum.camera.height - 1;
+    }
+  return static_cast<double>(beyond) / (kRings * kDirections);
+}
+
 // Links the film's balls and gathers all that is told of them. `findings` gets every frame's balls.
 void gather(const FilmScene& scene, const FilmPass& pass, const Timeline& line, const PlacesOf& places,
             const Bearings& bearings, double mean_radius, ChargeMotion& motion, FilmFindings& findings) {
@@ -320,7 +316,15 @@ void gather(const FilmScene& scene, const FilmPass& pass, const Timeline& line, 
   // Balls that no path bridges are missed about as often as those that one does.
   motion.filling.se = std::hypot(motion.filling.se, motion.filling.value * bridged_area / seen_area);
   statistics.finish(motion);
-  if (!scene.one_layer) motion.filling = filling_of_deep_mill(motion.field, geometry.radius);
+  if (!scene.one_layer) {
+    const double length = std::isnan(scene.layer_length) ? scene.radius : scene.layer_length;  // mills are that long
+    motion.filling = filling_of_deep_mill(motion.field, geometry.radius, std::max(1.0, length / (2 * mean_radius)));
+  }
+  // What the picture does not show of the mill may be empty or full.
+  if (const double unseen_share = share_beyond_picture(scene); unseen_share > 0) {
+    motion.filling.value += 0.5 * unseen_share;
+    motion.filling.se = std::hypot(motion.filling.se, unseen_share / std::sqrt(12.0));
+  }
   const double roll_se = motion.camera.roll_deg.se;
   add_shared_errors(motion, geometry, hidden, unseen,
                     {scene.drum.place_error / std::sqrt(2.0) * unit, scene.place_error,
@@ -357,7 +361,7 @@ ChargeMotion measure_film(const std::string& path, const FilmOptions& options, c
                                          motion.frames, reader.frame_count()));
 
   const double sense_seen = scene.drum.turn_per_frame.value < 0 ? -1.0 : 1.0;
-  const Timeline line = timeline_of(pass, sense_seen);
+  const Timeline line = timeline_of(pass, scene.drum, sense_seen);
   motion.duplicated_frames = line.clock.duplicated;
   for (const DroppedFrames& d : line.clock.dropped) motion.dropped_frames.push_back(d.after);
   const Rotation seen = sense_seen > 0 ? Rotation::kCounterClockwise : Rotation::kClockwise;

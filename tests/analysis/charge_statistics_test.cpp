@@ -96,5 +96,27 @@ TEST(ChargeStatistics, FlightShareIsThatOfTheBallsOnParabolas) {
   EXPECT_NEAR(share.value, 10.0 / 30 * length * fps / 101, 0.01);
 }
 
+// A bed below, and above it balls that lie by chance in three layers, or a bed that is there half of the time: what is
+// seen on average is the same, what there is is not.
+TEST(FillingOfDeepMill, HoldsForBallsInFlightAndForABedThatSways) {
+  constexpr double kLayers = 3, kEach = 0.2;  // of the settled share, in flight
+  Field field;
+  field.n = 40;
+  field.cell = 2.0 / field.n;
+  double bed = 0, above = 0;
+  for (int k = 0; k < field.n * field.n; ++k) {
+    const double x = (k % field.n + 0.5) * field.cell - 1, y = (k / field.n + 0.5) * field.cell - 1;
+    const bool inside = std::hypot(x, y) < 1, low = y < -0.2;
+    const double by_chance = 1 - std::pow(1 - kEach * kSettledAreaShare, kLayers);
+    field.occupancy.push_back(!inside ? kNotGiven : low ? 1.0 : by_chance);
+    (low ? bed : above) += inside ? field.cell * field.cell / kPi : 0.0;
+  }
+  const double swaying = 1 - std::pow(1 - kEach * kSettledAreaShare, kLayers);
+  const Estimate filling = filling_of_deep_mill(field, 1.0, kLayers);
+  for (const double truth : {bed + kEach * above, bed + swaying * above})
+    EXPECT_LT(std::abs(filling.value - truth), 2 * filling.se);
+  EXPECT_LT(filling.se, 0.2 * filling.value);
+}
+
 }  // namespace
 }  // namespace tumble::analysis
