@@ -96,10 +96,10 @@ TEST(ChargeStatistics, FlightShareIsThatOfTheBallsOnParabolas) {
   EXPECT_NEAR(share.value, 10.0 / 30 * length * fps / 101, 0.01);
 }
 
-// A bed below, and above it balls that lie by chance in three layers, or a bed that is there half of the time: what is
+// A bed below, and above it balls that lie by chance in five layers, or a bed that is there half of the time: what is
 // seen on average is the same, what there is is not.
 TEST(FillingOfDeepMill, HoldsForBallsInFlightAndForABedThatSways) {
-  constexpr double kLayers = 3, kEach = 0.2;  // of the settled share, in flight
+  constexpr double kLayers = 5, kEach = 0.25;  // of the settled share, in flight
   Field field;
   field.n = 40;
   field.cell = 2.0 / field.n;
