@@ -21,6 +21,7 @@ constexpr double kSharp = 0.5;       // share of such edges from which outlines 
 constexpr double kWhole = 0.6;       // share from which the right circle is found for certain
 constexpr double kAside = 1.2;       // of other starts for it [px]
 constexpr std::size_t kFewest = 12;  // balls to learn from
+constexpr std::size_t kEnough = 80;  // their median share is then known to 0.02
 
 // Height of the edge along the rays from a centre, by ray and distance.
 class Rays {
@@ -162,10 +163,16 @@ double learn_rim(const std::vector<cv::Mat>& greys, const std::vector<std::vecto
   std::size_t count = 0;
   for (const auto& p : centres) count += p.size();
   if (count < kFewest) return kNotGiven;
+  std::vector<std::vector<cv::Point2d>> places(centres.size());
+  const std::size_t stride = 1 + count / kEnough;
+  std::size_t met = 0;
+  for (std::size_t g = 0; g < centres.size(); ++g)
+    for (const cv::Point2d& p : centres[g])
+      if (met++ % stride == 0) places[g].push_back(p);
+  const auto first = places;
   double best = 0, rim = 0;
-  auto places = centres;
   for (double r = 0.86 * radius; r < 1.1 * radius; r += 1.6 * kOnCircle) {
-    auto moved = centres;
+    auto moved = first;
     const double share = share_on(greys, moved, r, radius);
     if (share <= best) continue;
     best = share;

@@ -89,14 +89,9 @@ double amplitude_of(const Look& look) {
   return std::sqrt(squares / kMarkRings);
 }
 
-// What is explained of a few looks by a pattern that turns by w a frame, as a log likelihood; and the pattern.
-struct Turning {
-  double likelihood = 0;
+// What a few looks have in common when each is turned back by w a frame.
+Look pattern_of(std::span<const Seen* const> looks, double about, double w) {
   Look pattern{};
-};
-
-Turning turning(std::span<const Seen* const> looks, double about, double w, const Terms& spoil) {
-  Turning t;
   for (const Seen* seen : looks) {
     const std::complex<double> step = std::polar(1.0, w * (seen->sighting->time - about));
     std::complex<double> back = 1;
@@ -104,17 +99,77 @@ Turning turning(std::span<const Seen* const> looks, double about, double w, cons
       back *= step;
       for (int r = 0; r < kMarkRings; ++r) {
         const auto k = static_cast<std::size_t>(r * kMarkHarmonics + m);
-        t.pattern[k] += seen->look[k] * back;
+        pattern[k] += seen->look[k] * back;
       }
     }
   }
-  const double n = static_cast<double>(looks.size());
-  for (std::size_t k = 0; k < kMarkTerms; ++k) {
-    t.likelihood += std::norm(t.pattern[k]) / (n * spoil[k]);
-    t.pattern[k] /= n;
-  }
-  return t;
+  for (auto& p : pattern) p /= static_cast<double>(looks.size());
+  return pattern;
 }
+
+// Log likelihood that a few looks show one pattern that turns by w a frame: what that pattern explains of them. Its
+// square falls apart into one short Fourier series in w for each pair of looks, in which the rings have been summed.
+class SpinLikelihood {
+ public:
+  SpinLikelihood(std::span<const Seen* const> looks, const Terms& spoil) {
+    const double n = static_cast<double>(looks.size());
+    for (std::size_t a = 0; a < looks.size(); ++a) {
+      for (std::size_t k = 0; k < kMarkTerms; ++k) alone_ += std::norm(looks[a]->look[k]) / (n * spoil[k]);
+      for (std::size_t b = 0; b < a; ++b) {
+        Pair& pair = pairs_.emplace_back();
+        pair.apart = looks[a]->sighting->time - looks[b]->sighting->time;
+        for (std::size_t k = 0; k < kMarkTerms; ++k)
+          pair.terms[k % kMarkHarmonics] += looks[a]->look[k] * std::conj(looks[b]->look[k]) * (2 / (n * spoil[k]));
+      }
+    }
+  }
+
+  double at(double w) const {
+    double sum = alone_;
+    for (const Pair& pair : pairs_) {
+      const std::complex<double> turn = std::polar(1.0, w * pair.apart);
+      std::complex<double> z = 1;
+      for (const std::complex<double>& term : pair.terms) sum += (term * (z *= turn)).real();
+    }
+    return sum;
+  }
+
+  // At -half .. half times `step`; both signs have their cosines and sines in common.
+  std::vector<double> along(double step, int half) const {
+    const Eigen::Index n = half + 1;
+    Eigen::ArrayXd even = Eigen::ArrayXd::Constant(n, alone_), odd = Eigen::ArrayXd::Zero(n), c(n), s(n), next;
+    for (const Pair& pair : pairs_) {
+      const std::complex<double> turn = std::polar(1.0, step * pair.apart);
+      std::complex<double> z = 1;
+      for (Eigen::Index i = 0; i < n; ++i, z *= turn) {
+        c[i] = z.real();
+        s[i] = z.imag();
+      }
+      Eigen::ArrayXd cm = c, sm = s;  // of multiples of the angle
+      for (const std::complex<double>& term : pair.terms) {
+        even += term.real() * cm;
+        odd += term.imag() * sm;
+        next = cm * c - sm * s;
+        sm = cm * s + sm * c;
+        cm.swap(next);
+      }
+    }
+    std::vector<double> all(2 * static_cast<std::size_t>(half) + 1);
+    for (int i = 0; i <= half; ++i) {
+      all[static_cast<std::size_t>(half + i)] = even[i] - odd[i];
+      all[static_cast<std::size_t>(half - i)] = even[i] + odd[i];
+    }
+    return all;
+  }
+
+ private:
+  struct Pair {
+    double apart = 0;  // [frames]
+    std::array<std::complex<double>, kMarkHarmonics> terms{};
+  };
+  double alone_ = 0;
+  std::vector<Pair> pairs_;
+};
 
 struct SpinFit {
   double spin = kNotGiven, se = kNotGiven;  // [rad/frame]
@@ -135,8 +190,8 @@ SpinFit fit_spin(std::span<const Seen* const> looks, double about, const Expecta
   const double span = looks.back()->sighting->time - looks.front()->sighting->time;
   const double step = 0.25 / (kMarkHarmonics * std::max(1.0, 0.5 * span)), fine = 0.2 * step;
   const int half = static_cast<int>(std::ceil(std::clamp(4 * expected.spread, 0.5 * kPi, kPi) / step));
-  std::vector<double> likelihood;
-  for (int i = -half; i <= half; ++i) likelihood.push_back(turning(looks, about, i * step, expected.spoil).likelihood);
+  const SpinLikelihood turned(looks, expected.spoil);
+  const std::vector<double> likelihood = turned.along(step, half);
   double all = 0;
   for (const Seen* seen : looks)
     for (std::size_t k = 0; k < kMarkTerms; ++k) all += std::norm(seen->look[k]) / expected.spoil[k];
@@ -161,11 +216,10 @@ SpinFit fit_spin(std::span<const Seen* const> looks, double about, const Expecta
     }
   }
   if (best < 0) return fit;
-  const auto at = [&](double w) { return turning(looks, about, w, expected.spoil).likelihood; };
   // A parabola through the peak, and a finer one through what it gives.
   double peak = 0, bend = 0;
   const auto refine = [&](double w, double by) {
-    const double left = at(w - by), middle = at(w), right = at(w + by);
+    const double left = turned.at(w - by), middle = turned.at(w), right = turned.at(w + by);
     bend = (left - 2 * middle + right) / (by * by);
     if (bend < 0) peak = w + std::clamp(0.5 * (left - right) / (bend * by), -by, by);
     return bend < 0;
@@ -173,9 +227,9 @@ SpinFit fit_spin(std::span<const Seen* const> looks, double about, const Expecta
   if (!refine((best - half) * step, step) || !refine(peak, fine)) return fit;
   fit.spin = peak;
   fit.gap = posterior(best) - second;
-  const double found_likelihood = at(fit.spin);
-  fit.evidence = (found_likelihood - std::max(at(0), at(expected.turn))) / doubt;
-  fit.amplitude = amplitude_of(turning(looks, about, fit.spin, expected.spoil).pattern);
+  const double found_likelihood = turned.at(fit.spin);
+  fit.evidence = (found_likelihood - std::max(turned.at(0), turned.at(expected.turn))) / doubt;
+  fit.amplitude = amplitude_of(pattern_of(looks, about, fit.spin));
   // Beyond noise, a ball that rolls about another axis shows a pattern that changes; that change may pass for a turn.
   const double changed = std::max(0.0, all - found_likelihood - 1.5 * freedom) / std::max(all, 1e-9);
   fit.se = std::hypot(std::sqrt(doubt / -bend), kTilting * std::sqrt(changed));
@@ -210,13 +264,13 @@ Expectation expect(const std::vector<std::vector<Seen*>>& paths, const Expectati
       const SpinFit fit = fit_spin(near, about, rough);
       if (std::isnan(fit.spin)) continue;
       spins.push_back(std::abs(fit.spin));
-      const Turning found = turning(near, about, fit.spin, rough.spoil);
+      const Look pattern = pattern_of(near, about, fit.spin);
       for (std::size_t k = 0; k < kMarkTerms; ++k) {
         const double m = static_cast<double>(k % kMarkHarmonics + 1);
         double sum = 0;
         for (const Seen* s : near)
           sum +=
-              std::norm(s->look[k] - found.pattern[k] * std::polar(1.0, -m * fit.spin * (s->sighting->time - about)));
+              std::norm(s->look[k] - pattern[k] * std::polar(1.0, -m * fit.spin * (s->sighting->time - about)));
         squares[k].push_back(sum / static_cast<double>(near.size() - 1));
       }
     }
