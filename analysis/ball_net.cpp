@@ -1,7 +1,6 @@
 #include "analysis/ball_net.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "analysis/conv_net.h"
@@ -16,6 +15,7 @@ namespace {
 constexpr int kStride = 4, kFine = 16, kWidth = 32, kMaps = 7, kSubcells = 4;
 constexpr int kSpread = 64, kJoined = kFine + kSpread / kSubcells;
 enum Map { kHeat, kAlongU, kAlongV, kLogRadius, kVisible, kLogDeviation, kCover };
+using Answer = cv::Vec<float, kMaps>;  // of one place
 
 // The network for pictures of one size.
 struct Layers {
@@ -29,41 +29,34 @@ struct Layers {
     for (const int dilation : {1, 2, 1, 2}) net.add_convolved(net.convolve(x, {kWidth, 3, 1, dilation}), x, {kWidth});
     x = net.convolve(x, {kSpread, 1});
     const int h2 = height / 2, w2 = width / 2;
-    const auto fine_maps = net.copy(fine, net.plain({1, kFine, h2, w2}));
-    const auto coarse_maps = net.copy(x, net.plain({1, kSpread, h2 / 2, w2 / 2}));
+    const auto fine_maps = net.as_plain(fine), coarse_maps = net.as_plain(x);
     const auto both = net.plain({1, kJoined, h2, w2});
     net.call(
         [=] { spread(ConvNet::data_of(fine_maps), ConvNet::data_of(coarse_maps), h2, w2, ConvNet::data_of(both)); });
     x = net.convolve(net.convolve(both, {kFine}), {.channels = kMaps, .size = 1, .rectify = false});
-    output = net.copy(x, net.plain({1, kMaps, h2, w2}));
+    output = net.as_plain(x);
     net.check_complete();
   }
 
   // The coarse maps in fours onto the fine grid, behind the fine ones.
   static void spread(const float* fine, const float* coarse, int height, int width, float* both) {
-    const auto h = static_cast<std::size_t>(height), w = static_cast<std::size_t>(width);
-    float* to = std::copy_n(fine, kFine * h * w, both);
-    for (std::size_t map = 0; map < kSpread / kSubcells; ++map)
-      for (std::size_t s = 0; s < kSubcells; ++s)
-        for (std::size_t i = 0; i < h / 2; ++i) {
-          float* row = to + (map * h + 2 * i + s / 2) * w + s % 2;
-          for (std::size_t j = 0; j < w / 2; ++j) row[2 * j] = *coarse++;
-        }
+    for (int i = 0; i < height; ++i)
+      for (int j = 0; j < width; ++j) {
+        both = std::copy_n(fine, kFine, both);
+        fine += kFine;
+        const float* cell = coarse + (i / 2 * (width / 2) + j / 2) * kSpread + 2 * (i % 2) + j % 2;
+        for (int map = 0; map < kSpread / kSubcells; ++map) *both++ = cell[map * kSubcells];
+      }
   }
 };
 
-// Planes of blue, green and red, of mean 0 and deviation about 1 over the picture: exposure does not matter.
-void fill_input(const cv::Mat& bgr, float* planes) {
+// Of mean 0 and deviation about 1 over the picture: exposure does not matter.
+void fill_input(const cv::Mat& bgr, float* input) {
   cv::Scalar mean, deviation;
   cv::meanStdDev(bgr.reshape(1), mean, deviation);
-  const auto scale = static_cast<float>(1 / (deviation[0] + 8)), shift = static_cast<float>(mean[0]);
-  const std::size_t n = bgr.total();
-  for (int v = 0; v < bgr.rows; ++v) {
-    const std::uint8_t* row = bgr.ptr<std::uint8_t>(v);
-    float* to = planes + static_cast<std::size_t>(v) * bgr.cols;
-    for (int u = 0; u < bgr.cols; ++u)
-      for (std::size_t c = 0; c < 3; ++c) to[c * n + u] = (static_cast<float>(row[3 * u + c]) - shift) * scale;
-  }
+  const double scale = 1 / (deviation[0] + 8);
+  cv::Mat filled(bgr.size(), CV_32FC3, input);
+  bgr.convertTo(filled, CV_32F, scale, -mean[0] * scale);
 }
 
 }  // namespace
@@ -90,37 +83,32 @@ BallSight BallNet::look(const cv::Mat& picture, double least_score) {
   }
   fill_input(bgr, ConvNet::data_of(impl_->layers->input));
   impl_->layers->net.run();
-  float* answer = ConvNet::data_of(impl_->layers->output);
-
   const int h = whole.height / 2, w = whole.width / 2;  // a grid of 2 px
-  std::array<cv::Mat, kMaps> maps;
-  for (int m = 0; m < kMaps; ++m) maps[m] = cv::Mat(h, w, CV_32F, answer + static_cast<std::size_t>(m) * h * w);
+  const cv::Mat_<Answer> answers(h, w, reinterpret_cast<Answer*>(ConvNet::data_of(impl_->layers->output)));
   BallSight sight;
-  sight.charge.create(h, w, CV_32F);
-  for (int i = 0; i < h; ++i)
-    for (int j = 0; j < w; ++j)
-      sight.charge.at<float>(i, j) = static_cast<float>(sigmoid(maps[kCover].at<float>(i, j)));
+  cv::extractChannel(answers, sight.charge, kCover);
+  cv::exp(-sight.charge, sight.charge);
+  sight.charge = 1 / (1 + sight.charge);
 
   const double least = std::log(least_score / (1 - least_score));
-  for (int i = 0; i < h; ++i) {
-    const float* heat = maps[kHeat].ptr<float>(i);
+  for (int i = 0; i < h; ++i)
     for (int j = 0; j < w; ++j) {
-      if (heat[j] < least) continue;
+      const Answer& at = answers(i, j);
+      if (at[kHeat] < least) continue;
       bool peak = true;
       for (int a = std::max(0, i - 1); peak && a <= std::min(h - 1, i + 1); ++a)
         for (int b = std::max(0, j - 1); peak && b <= std::min(w - 1, j + 1); ++b)
-          peak = maps[kHeat].at<float>(a, b) <= heat[j];
+          peak = answers(a, b)[kHeat] <= at[kHeat];
       if (!peak) continue;
       SeenBall ball;
-      ball.u = 2.0 * (j + static_cast<double>(maps[kAlongU].at<float>(i, j))) + 0.5;
-      ball.v = 2.0 * (i + static_cast<double>(maps[kAlongV].at<float>(i, j))) + 0.5;
-      ball.radius = kNetRadius * std::exp(maps[kLogRadius].at<float>(i, j));
-      ball.score = sigmoid(heat[j]);
-      ball.visible = sigmoid(maps[kVisible].at<float>(i, j));
-      ball.deviation = 2 * std::exp(std::clamp(maps[kLogDeviation].at<float>(i, j), -5.0f, 3.0f));
+      ball.u = 2.0 * (j + static_cast<double>(at[kAlongU])) + 0.5;
+      ball.v = 2.0 * (i + static_cast<double>(at[kAlongV])) + 0.5;
+      ball.radius = kNetRadius * std::exp(at[kLogRadius]);
+      ball.score = sigmoid(at[kHeat]);
+      ball.visible = sigmoid(at[kVisible]);
+      ball.deviation = 2 * std::exp(std::clamp(at[kLogDeviation], -5.0f, 3.0f));
       sight.balls.push_back(ball);
     }
-  }
   // One ball, one peak: of two that lie within each other the clearer stays.
   std::stable_sort(sight.balls.begin(), sight.balls.end(),
                    [](const SeenBall& a, const SeenBall& b) { return a.score > b.score; });

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <opencv2/imgproc.hpp>
 
 #include "analysis/conv_net.h"
 #include "analysis/net_weights.h"
@@ -14,31 +15,14 @@ namespace {
 
 constexpr int kPatch = 24, kBatch = 32, kAnswers = 5;
 
-// The patch round a ball, of mean 0 and deviation about 1, as planes of blue, green and red.
-void fill_patch(const cv::Mat& bgr, double u, double v, float* planes) {
-  constexpr int n = kPatch * kPatch;
-  const double u0 = u - 0.5 * (kPatch - 1), v0 = v - 0.5 * (kPatch - 1);
-  double sum = 0, squares = 0;
-  const int iu = static_cast<int>(std::floor(u0)), iv = static_cast<int>(std::floor(v0));
-  const auto fu = static_cast<float>(u0 - iu), fv = static_cast<float>(v0 - iv);
-  for (int i = 0; i < kPatch; ++i) {
-    const std::uint8_t* above = bgr.ptr<std::uint8_t>(std::clamp(iv + i, 0, bgr.rows - 1));
-    const std::uint8_t* below = bgr.ptr<std::uint8_t>(std::clamp(iv + i + 1, 0, bgr.rows - 1));
-    for (int j = 0; j < kPatch; ++j) {
-      const int left = 3 * std::clamp(iu + j, 0, bgr.cols - 1), right = 3 * std::clamp(iu + j + 1, 0, bgr.cols - 1);
-      for (int c = 0; c < 3; ++c) {
-        const float a = (1 - fu) * static_cast<float>(above[left + c]) + fu * static_cast<float>(above[right + c]);
-        const float b = (1 - fu) * static_cast<float>(below[left + c]) + fu * static_cast<float>(below[right + c]);
-        const float value = (1 - fv) * a + fv * b;
-        planes[c * n + i * kPatch + j] = value;
-        sum += value;
-        squares += value * value;
-      }
-    }
-  }
-  const double mean = sum / (3 * n), deviation = std::sqrt(std::max(0.0, squares / (3 * n) - mean * mean));
-  const auto shift = static_cast<float>(mean), scale = static_cast<float>(1 / (deviation + 6));
-  for (int k = 0; k < 3 * n; ++k) planes[k] = (planes[k] - shift) * scale;
+// The patch round a ball, of mean 0 and deviation about 1.
+void fill_patch(const cv::Mat& bgr, double u, double v, float* input) {
+  cv::Mat patch(kPatch, kPatch, CV_32FC3, input);
+  cv::getRectSubPix(bgr, patch.size(), {static_cast<float>(u), static_cast<float>(v)}, patch, CV_32F);
+  cv::Scalar mean, deviation;
+  cv::meanStdDev(patch.reshape(1), mean, deviation);
+  const double scale = 1 / (deviation[0] + 6);
+  patch.convertTo(patch, CV_32F, scale, -mean[0] * scale);
 }
 
 }  // namespace
@@ -57,7 +41,7 @@ struct BallRefiner::Impl {
     net.add_convolved(x, quarter, {64});
     x = net.convolve(quarter, {.channels = 64, .size = kPatch / 4, .padded = false});
     x = net.convolve(x, {.channels = kAnswers, .size = 1, .rectify = false});
-    output = net.copy(x, net.plain({kBatch, kAnswers, 1, 1}));
+    output = net.as_plain(x);
     net.check_complete();
   }
 };

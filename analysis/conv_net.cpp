@@ -3,6 +3,7 @@
 #include <omp.h>
 
 #include <algorithm>
+#include <cstring>
 #include <unordered_map>
 
 #include "core/error.h"
@@ -20,16 +21,27 @@ ConvNet::ConvNet(std::span<const float> weights)
   omp_set_num_threads(1);  // of this thread's convolutions: callers look at pictures side by side
 }
 
-ConvNet::Memory ConvNet::plain(const Dims& dims) { return Memory({dims, kFloat, Memory::format_tag::nchw}, engine_); }
+ConvNet::Memory ConvNet::plain(const Dims& dims) { return Memory({dims, kFloat, Memory::format_tag::nhwc}, engine_); }
 
-ConvNet::Memory ConvNet::copy(const Memory& from, const Memory& to) {
-  const Memory target = to.get(true) != nullptr ? to : Memory(from.get_desc(), engine_);
-  const dnnl::reorder reorder(from, target);
+ConvNet::Memory ConvNet::as_plain(const Memory& from) {
+  const Memory to = plain(from.get_desc().dims());
+  if (from.get_desc() == to.get_desc()) return from;
+  reorder(from, to);
+  return to;
+}
+
+ConvNet::Memory ConvNet::copy(const Memory& from) {
+  const Memory to(from.get_desc(), engine_);
+  call([from, to, bytes = from.get_desc().get_size()] { std::memcpy(data_of(to), data_of(from), bytes); });
+  return to;
+}
+
+void ConvNet::reorder(const Memory& from, const Memory& to) {
   steps_.emplace_back(
-      [this, reorder, arguments = std::unordered_map<int, Memory>{{DNNL_ARG_FROM, from}, {DNNL_ARG_TO, target}}] {
-        reorder.execute(stream_, arguments);
+      [this, primitive = dnnl::reorder(from, to),
+       arguments = std::unordered_map<int, Memory>{{DNNL_ARG_FROM, from}, {DNNL_ARG_TO, to}}] {
+        primitive.execute(stream_, arguments);
       });
-  return target;
 }
 
 ConvNet::Memory ConvNet::convolve(const Memory& from, const Layer& layer) {
@@ -95,7 +107,10 @@ void ConvNet::convolve(const Memory& from, const Layer& layer, bool add, Memory&
     weights = packed;
   }
   Memory source = from;
-  if (chosen.src_desc() != from.get_desc()) source = copy(from, Memory(chosen.src_desc(), engine_));
+  if (chosen.src_desc() != from.get_desc()) {
+    source = Memory(chosen.src_desc(), engine_);
+    reorder(from, source);
+  }
   if (!add) to = Memory(chosen.dst_desc(), engine_);
   const dnnl::convolution_forward primitive(chosen);
   steps_.emplace_back(

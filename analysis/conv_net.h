@@ -26,8 +26,11 @@ class ConvNet {
     bool padded = true;  // keeps the shape, but for the stride
     bool rectify = true;
   };
-  Memory plain(const Dims& dims);                          // batch, channels, rows, columns, one after the other
-  Memory copy(const Memory& from, const Memory& to = {});  // without `to` into memory of the same kind
+  // Dims are batch, channels, rows, columns. Plain memory holds the channels of a place side by side, as pictures do:
+  // also what convolutions like best where there is AVX-512.
+  Memory plain(const Dims& dims);
+  Memory as_plain(const Memory& from);  // itself where it is plain already
+  Memory copy(const Memory& from);
   Memory convolve(const Memory& from, const Layer& layer);
   void add_convolved(const Memory& from, const Memory& onto, const Layer& layer);
   void call(std::function<void()> step);
@@ -37,6 +40,7 @@ class ConvNet {
   static float* data_of(const Memory& m) { return static_cast<float*>(m.get_data_handle()); }
 
  private:
+  void reorder(const Memory& from, const Memory& to);
   Memory next_weights(const Dims& dims, Memory::format_tag tag);
   void convolve(const Memory& from, const Layer& layer, bool add, Memory& to);
 
