@@ -269,8 +269,7 @@ Expectation expect(const std::vector<std::vector<Seen*>>& paths, const Expectati
         const double m = static_cast<double>(k % kMarkHarmonics + 1);
         double sum = 0;
         for (const Seen* s : near)
-          sum +=
-              std::norm(s->look[k] - pattern[k] * std::polar(1.0, -m * fit.spin * (s->sighting->time - about)));
+          sum += std::norm(s->look[k] - pattern[k] * std::polar(1.0, -m * fit.spin * (s->sighting->time - about)));
         squares[k].push_back(sum / static_cast<double>(near.size() - 1));
       }
     }

@@ -40,6 +40,14 @@ Estimate filling_of_deep_mill(const Field& field, double mill_radius, double lay
   return {0.5 * (low + high), (high - low) / std::sqrt(12.0)};
 }
 
+// At the shell: still within the ring that toe and shoulder are read in. A flight worth the name carries the ball half
+// a mill radius; the medians hardly move from there on, while below they follow the hops in the shoulder.
+FlightAngles angles_of(std::span<const Flight> flights, const MillGeometry& geometry) {
+  return flight_angles(flights, edge_ring(geometry.tip_radius, geometry.mean_diameter).inner, 0.5 * geometry.radius);
+}
+
+double circulation_reach(const MillGeometry& geometry) { return 1.5 * geometry.mean_diameter; }
+
 ChargeStatistics::ChargeStatistics(const MillGeometry& geometry)
     : geometry_(geometry),
       ring_(edge_ring(geometry.tip_radius, geometry.mean_diameter)),
@@ -91,7 +99,7 @@ void ChargeStatistics::finish(ChargeMotion& motion) {
   motion.profile = std::move(profile_);
   motion.head = mean_of_series(heads_);
   motion.field = field_.field();
-  const auto centre = field_.centre_of_circulation(1.5 * geometry_.mean_diameter);
+  const auto centre = field_.centre_of_circulation(circulation_reach(geometry_));
   motion.centre_of_circulation_x = centre.x;
   motion.centre_of_circulation_y = centre.y;
   const auto surface = field_.surface();
@@ -99,9 +107,7 @@ void ChargeStatistics::finish(ChargeMotion& motion) {
   motion.surface_angle_deg = surface.angle_deg;
   if (flights_) {
     const auto flights = flights_->finish();
-    // At the shell: still within the ring that toe and shoulder are read in. A flight worth the name carries the ball
-    // half a mill radius; the medians hardly move from there on, while below they follow the hops in the shoulder.
-    const FlightAngles angles = flight_angles(flights, ring_.inner, 0.5 * geometry_.radius);
+    const FlightAngles angles = angles_of(flights, geometry_);
     motion.departure_deg = angles.departure_deg;
     motion.impact_toe_deg = angles.impact_toe_deg;
     motion.granular_temperature = field_.granular_temperature();

@@ -22,6 +22,11 @@ struct MillGeometry {
   double gravity = kNotGiven;  // NaN where length or clock is unknown
 };
 
+// Of these flights, where they leave the shell of this mill and end.
+FlightAngles angles_of(std::span<const Flight> flights, const MillGeometry& geometry);
+
+double circulation_reach(const MillGeometry& geometry);  // of the plane whose root is the centre of circulation
+
 // Turns balls seen frame by frame, from truth or from pictures, into toe, shoulder, head, fields and flights: one code
 // for both, so that they can differ only in what was seen.
 class ChargeStatistics {

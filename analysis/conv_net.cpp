@@ -37,11 +37,10 @@ ConvNet::Memory ConvNet::copy(const Memory& from) {
 }
 
 void ConvNet::reorder(const Memory& from, const Memory& to) {
-  steps_.emplace_back(
-      [this, primitive = dnnl::reorder(from, to),
-       arguments = std::unordered_map<int, Memory>{{DNNL_ARG_FROM, from}, {DNNL_ARG_TO, to}}] {
-        primitive.execute(stream_, arguments);
-      });
+  steps_.emplace_back([this, primitive = dnnl::reorder(from, to),
+                       arguments = std::unordered_map<int, Memory>{{DNNL_ARG_FROM, from}, {DNNL_ARG_TO, to}}] {
+    primitive.execute(stream_, arguments);
+  });
 }
 
 ConvNet::Memory ConvNet::convolve(const Memory& from, const Layer& layer) {

@@ -1,6 +1,7 @@
 #include "analysis/ring_occupancy.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -17,9 +18,20 @@ struct Chord {  // what one disc covers of one ray
 constexpr int kRays = 360 * kRaysPerBin;
 constexpr double kRayStep = 2.0 * kPi / kRays;
 
+struct RayDirections {
+  std::array<double, kRays> c{}, s{};
+  RayDirections() {
+    for (std::size_t k = 0; k < kRays; ++k) {
+      c[k] = std::cos((static_cast<double>(k) + 0.5) * kRayStep);
+      s[k] = std::sin((static_cast<double>(k) + 0.5) * kRayStep);
+    }
+  }
+};
+
 }  // namespace
 
 RingProfile ring_occupancy(std::span<const Disc> discs, const Ring& ring) {
+  static const RayDirections rays;
   std::vector<Chord> chords;
   for (const Disc& d : discs) {
     const double rho = std::hypot(d.x, d.y);
@@ -29,13 +41,13 @@ RingProfile ring_occupancy(std::span<const Disc> discs, const Ring& ring) {
     const int first = static_cast<int>(std::ceil((middle - half) / kRayStep - 0.5));
     const int last = static_cast<int>(std::floor((middle + half) / kRayStep - 0.5));
     for (int k = first; k <= std::min(last, first + kRays - 1); ++k) {
-      const double delta = (k + 0.5) * kRayStep - middle;
-      const double across = rho * std::sin(delta);
-      const double reach = d.radius * d.radius - across * across;
+      const int ray = ((k % kRays) + kRays) % kRays;
+      const double c = rays.c[static_cast<std::size_t>(ray)], si = rays.s[static_cast<std::size_t>(ray)];
+      const double across = d.y * c - d.x * si, reach = d.radius * d.radius - across * across;
       if (reach <= 0) continue;
-      const double along = rho * std::cos(delta), s = std::sqrt(reach);
+      const double along = d.x * c + d.y * si, s = std::sqrt(reach);
       const double near = std::max(along - s, ring.inner), far = std::min(along + s, ring.outer);
-      if (far > near) chords.push_back({((k % kRays) + kRays) % kRays, near, far});
+      if (far > near) chords.push_back({ray, near, far});
     }
   }
   std::sort(chords.begin(), chords.end(),

@@ -13,9 +13,9 @@ struct SharedErrors {
   double roll = 0;   // of the camera [rad]
 };
 
-// Adds these errors to those that `motion` has from scatter in time: everything is measured again from its tracks with
-// axis, scale and roll off by one standard error, to both sides. `geometry`, `hidden` and, by frame, `unseen` as they
-// were for the motion; what paths bridge is added once.
+// Adds these errors to those that `motion` has from scatter in time: what depends on them is measured again from its
+// tracks with axis, scale and roll off by one standard error, to both sides. `geometry`, `hidden` and, by frame,
+// `unseen` as they were for the motion; what paths bridge is added once.
 void add_shared_errors(ChargeMotion& motion, const MillGeometry& geometry, const std::vector<bool>& hidden,
                        const FrameSpool<TrackPoint>& unseen, const SharedErrors& errors);
 

@@ -134,6 +134,20 @@ ChargeEdges find_edges(const RingProfile& smoothed) {
   return edges;
 }
 
+void RingMean::add(const RingProfile& profile, const std::vector<bool>& hidden) {
+  for (std::size_t i = 0; i < kBins; ++i) {
+    if (i < hidden.size() && hidden[i]) continue;
+    sum_[i] += profile[i];
+    ++seen_[i];
+  }
+}
+
+RingProfile RingMean::mean() const {
+  RingProfile mean;
+  for (std::size_t i = 0; i < kBins; ++i) mean[i] = seen_[i] > 0 ? sum_[i] / seen_[i] : kNotGiven;
+  return mean;
+}
+
 EdgeStatistics::EdgeStatistics(double passage_frames)
     : half_window_(static_cast<std::size_t>(std::max(0.0, std::round((passage_frames - 1.0) / 2.0)))),
       sums_(2 * kBins, kMostBlocks) {}
@@ -176,7 +190,7 @@ std::vector<ChargeEdges> EdgeStatistics::finish_frames() {
 EdgeEstimates EdgeStatistics::estimate() const {
   EdgeEstimates result;
   result.occupancy = mean_profile(sums_.total());
-  const ChargeEdges edges = find_edges(smooth(result.occupancy, 3));
+  const ChargeEdges edges = find_edges(smooth(result.occupancy, kMeanBox));
   for (std::size_t l = 0; l < kEdgeShare.size(); ++l) {
     result.toe[l].value = edges.toe[l];
     result.shoulder[l].value = edges.shoulder[l];
@@ -205,7 +219,7 @@ EdgeEstimates EdgeStatistics::estimate() const {
         for (std::size_t i = 0; i < total.size(); ++i) total[i] += block[i];
       }
     }
-    const ChargeEdges e = find_edges(smooth(mean_profile(total), 3));
+    const ChargeEdges e = find_edges(smooth(mean_profile(total), kMeanBox));
     for (std::size_t l = 0; l < kEdgeShare.size(); ++l) {
       toe[l].add(e.toe[l], edges.toe[l]);
       shoulder[l].add(e.shoulder[l], edges.shoulder[l]);

@@ -20,12 +20,24 @@ struct ChargeEdges {
   double middle = kNotGiven;  // circular mean of the bins above half the plateau [degrees]
 };
 
+inline constexpr int kMeanBox = 3;  // by which a time mean is smoothed before its edges are looked for [degrees]
+
 // Box of `width` bins (odd), circular; NaN bins are left out and stay NaN.
 RingProfile smooth(const RingProfile& profile, int width);
 
 // The contract's search on a profile that was smoothed already; between bin centres occupancy is taken as linear.
 // NaN where there is no charge, no edge, or where the edge lies behind hidden bins.
 ChargeEdges find_edges(const RingProfile& smoothed);
+
+// Time mean of the ring's occupancy; a bin counts in the frames in which it is not hidden.
+class RingMean {
+ public:
+  void add(const RingProfile& profile, const std::vector<bool>& hidden);
+  RingProfile mean() const;
+
+ private:
+  RingProfile sum_{}, seen_{};
+};
 
 struct EdgeEstimates {
   std::array<Estimate, 3> toe, shoulder;  // by EdgeLevel [degrees]
