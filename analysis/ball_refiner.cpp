@@ -13,7 +13,7 @@
 namespace tumble::analysis {
 namespace {
 
-constexpr int kPatch = 24, kBatch = 32, kAnswers = 5;
+constexpr int kPatch = 24, kBatch = 8, kAnswers = 5;
 
 // The patch round a ball, of mean 0 and deviation about 1.
 void fill_patch(const cv::Mat& bgr, double u, double v, float* input) {

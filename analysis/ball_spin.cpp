@@ -134,21 +134,22 @@ class SpinLikelihood {
     return sum;
   }
 
-  // At -half .. half times `step`; both signs have their cosines and sines in common.
+  // At -half .. half times `step`, to find the peak: single precision will do. Both signs have their cosines and sines
+  // in common.
   std::vector<double> along(double step, int half) const {
     const Eigen::Index n = half + 1;
-    Eigen::ArrayXd even = Eigen::ArrayXd::Constant(n, alone_), odd = Eigen::ArrayXd::Zero(n), c(n), s(n), next;
+    Eigen::ArrayXf even = Eigen::ArrayXf::Zero(n), odd = even, c(n), s(n), next;
     for (const Pair& pair : pairs_) {
       const std::complex<double> turn = std::polar(1.0, step * pair.apart);
       std::complex<double> z = 1;
       for (Eigen::Index i = 0; i < n; ++i, z *= turn) {
-        c[i] = z.real();
-        s[i] = z.imag();
+        c[i] = static_cast<float>(z.real());
+        s[i] = static_cast<float>(z.imag());
       }
-      Eigen::ArrayXd cm = c, sm = s;  // of multiples of the angle
+      Eigen::ArrayXf cm = c, sm = s;  // of multiples of the angle
       for (const std::complex<double>& term : pair.terms) {
-        even += term.real() * cm;
-        odd += term.imag() * sm;
+        even += static_cast<float>(term.real()) * cm;
+        odd += static_cast<float>(term.imag()) * sm;
         next = cm * c - sm * s;
         sm = cm * s + sm * c;
         cm.swap(next);
@@ -156,8 +157,8 @@ class SpinLikelihood {
     }
     std::vector<double> all(2 * static_cast<std::size_t>(half) + 1);
     for (int i = 0; i <= half; ++i) {
-      all[static_cast<std::size_t>(half + i)] = even[i] - odd[i];
-      all[static_cast<std::size_t>(half - i)] = even[i] + odd[i];
+      all[static_cast<std::size_t>(half + i)] = alone_ + even[i] - odd[i];
+      all[static_cast<std::size_t>(half - i)] = alone_ + even[i] + odd[i];
     }
     return all;
   }

@@ -17,7 +17,7 @@ namespace {
 constexpr int kShift = 4;        // fractional bits of OpenCV's drawing
 constexpr int kTrail = 8;        // frames of a ball's way that are drawn
 constexpr int kTileWidth = 640;  // of the contact sheet [px]
-constexpr std::size_t kTiles = 6;
+constexpr int kTiles = 6;
 const cv::Scalar kMillColour(255, 200, 60), kToeColour(60, 90, 255), kShoulderColour(80, 220, 80),
     kRejectColour(60, 60, 230), kHiddenColour(200, 60, 200);
 
@@ -195,15 +195,22 @@ void draw_film(const std::string& path, const FilmFindings& findings, const Char
   }
 }
 
-Image contact_sheet(const std::string& path, const FilmFindings& findings, const ChargeMotion& motion) {
-  FilmReader film(path);
+std::vector<int> sheet_frames(int frames) {
+  std::vector<int> shown;
+  for (int i = 0; i < kTiles && frames > 0; ++i) {
+    const int frame = std::min(frames - 1, i * frames / kTiles + kTrail);
+    if (shown.empty() || frame > shown.back()) shown.push_back(frame);
+  }
+  return shown;
+}
+
+Image contact_sheet(const std::string& path, const std::vector<int>& frames, const std::vector<cv::Mat>& pictures,
+                    const FilmFindings& findings, const ChargeMotion& motion) {
   std::vector<cv::Mat> tiles;
-  cv::Mat picture;
-  for (int f = 0; f < motion.frames && film.next(picture); ++f) {
-    const auto next = static_cast<int>(tiles.size() * static_cast<std::size_t>(motion.frames) / kTiles);
-    if (f != std::min(motion.frames - 1, next + kTrail) || tiles.size() == kTiles) continue;
+  for (std::size_t i = 0; i < pictures.size(); ++i) {
+    cv::Mat picture = pictures[i].clone();
     const cv::Rect part = mill_part(findings, picture.size());
-    draw_within(picture, part, findings, motion, f);
+    draw_within(picture, part, findings, motion, frames[i]);
     cv::Mat tile;
     cv::resize(picture(part), tile, {kTileWidth, std::max(1, kTileWidth * part.height / part.width)}, 0, 0,
                part.width > kTileWidth ? cv::INTER_AREA : cv::INTER_LINEAR);

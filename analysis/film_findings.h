@@ -36,6 +36,9 @@ void draw_film(const std::string& film, const FilmFindings& findings, const Char
                const std::function<void(const Image&)>& sink, const Progress& progress);
 
 // Six moments of the film with their findings and the numbers beside: to see at a glance whether to believe them.
-Image contact_sheet(const std::string& film, const FilmFindings& findings, const ChargeMotion& motion);
+// `pictures`: of the sheet's frames, as far as the film goes.
+std::vector<int> sheet_frames(int frames);
+Image contact_sheet(const std::string& film, const std::vector<int>& frames, const std::vector<cv::Mat>& pictures,
+                    const FilmFindings& findings, const ChargeMotion& motion);
 
 }  // namespace tumble::analysis

@@ -33,39 +33,41 @@ std::array<float, 3> colour_of(const cv::Mat& bgr, const Detection& d) {
 }  // namespace
 
 FilmPass look_through(const std::string& path, const DrumView& drum, const BallLook& look, const Circle& bound,
-                      double least_score, const Progress& progress) {
+                      double least_score, std::span<const int> keep, const Progress& progress) {
   FilmReader film(path);
   const auto workers = static_cast<std::size_t>(thread_limit());
   constexpr std::size_t kEach = 4;  // frames of a batch for each worker
   std::vector<std::unique_ptr<BallEyes>> eyes;
   for (std::size_t w = 0; w < workers; ++w) eyes.push_back(std::make_unique<BallEyes>());
   FilmPass pass;
-  std::vector<cv::Mat> pictures;
-  cv::Mat before, picture;
+  std::vector<cv::Mat> pictures(workers * kEach + 1);  // behind the last one of the batch before
+  std::size_t count = 0;
   double expected = 0;
   bool more = true;
   while (more) {
-    pictures.clear();
-    while (pictures.size() < workers * kEach && (more = film.next(picture))) {
+    std::swap(pictures[0], pictures[count]);
+    for (count = 0; count < workers * kEach && (more = film.next(pictures[count + 1])); ++count) {
+      const cv::Mat &before = pictures[count], &picture = pictures[count + 1];
+      const std::size_t f = pass.drum.size();
       DrumAngle angle;
       if (drum.reader != nullptr) {
         // The first ones have been followed to and fro already.
-        const std::size_t f = pass.drum.size();
         angle = f < drum.angles.size() ? drum.angles[f] : (*drum.reader)(picture, expected, drum.turn_per_frame.value);
         expected = angle.angle + drum.turn_per_frame.value;
       }
       pass.drum.push_back(angle);
       pass.difference.push_back(before.empty() ? kNotGiven
                                                : picture_difference(before, picture, bound.u, bound.v, bound.radius));
-      before = picture.clone();
-      pictures.push_back(before);
+      if (std::binary_search(keep.begin(), keep.end(), static_cast<int>(f))) pass.kept.push_back(picture.clone());
     }
-    std::vector<std::vector<FilmBall>> balls(pictures.size());
+    std::vector<std::vector<FilmBall>> balls(count);
     parallel_for(workers, 1, [&](std::size_t from, std::size_t to) {
       for (std::size_t w = from; w < to; ++w)
-        for (std::size_t i = w; i < pictures.size(); i += workers)
-          for (const Detection& d : detect_balls(*eyes[w], pictures[i], look, bound, least_score).balls)
-            balls[i].push_back({d, colour_of(pictures[i], d), look_at_mark(pictures[i], d.u, d.v, d.radius)});
+        for (std::size_t i = w; i < count; i += workers) {
+          const cv::Mat& picture = pictures[i + 1];
+          for (const Detection& d : detect_balls(*eyes[w], picture, look, bound, least_score).balls)
+            balls[i].push_back({d, colour_of(picture, d), look_at_mark(picture, d.u, d.v, d.radius)});
+        }
     });
     for (const auto& of_frame : balls) pass.balls.append(of_frame);
     report(progress, std::min(1.0, static_cast<double>(pass.frames()) / std::max(1, film.frame_count())));

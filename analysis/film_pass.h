@@ -1,5 +1,6 @@
 #pragma once
 #include <array>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -21,13 +22,15 @@ struct FilmPass {
   FrameSpool<FilmBall> balls;
   std::vector<DrumAngle> drum;
   std::vector<double> difference;  // to the frame before (frame_clock.h)
+  std::vector<cv::Mat> kept;       // pictures that were asked for, in order
 
   std::size_t frames() const { return balls.size(); }
 };
 
 // The whole film once: balls, drum angle and change of every frame. Pictures are decoded one after the other and looked
-// at side by side; what is found in one does not depend on the others. `bound`: where centres of balls can be [px].
+// at side by side; what is found in one does not depend on the others. `bound`: where centres of balls can be [px];
+// `keep`: frames whose pictures are to be kept, ascending.
 FilmPass look_through(const std::string& film, const DrumView& drum, const BallLook& look, const Circle& bound,
-                      double least_score, const Progress& progress);
+                      double least_score, std::span<const int> keep, const Progress& progress);
 
 }  // namespace tumble::analysis

@@ -352,7 +352,8 @@ ChargeMotion measure_film(const std::string& path, const FilmOptions& options, c
   BallLook look = look_at_balls(eyes.net, sample, sizes, known, scene);
   if (look.radii.empty()) throw InputError(path, kNoBalls);
   learn_rims(eyes, sample, scene.bound, look);
-  const FilmPass pass = look_through(path, scene.drum, look, scene.bound, kLeastScore, [&](double done) {
+  const std::vector<int> shown = sheet_frames(options.sheet ? reader.frame_count() : 0);
+  const FilmPass pass = look_through(path, scene.drum, look, scene.bound, kLeastScore, shown, [&](double done) {
     report(progress, kCalibrateShare + (kPassShare - kCalibrateShare) * done);
   });
   motion.frames = static_cast<int>(pass.frames());
@@ -387,7 +388,7 @@ ChargeMotion measure_film(const std::string& path, const FilmOptions& options, c
   FilmFindings findings = findings_of(scene, pass, radians(bearings.roll_deg), motion);
   gather(scene, pass, line, places, bearings, first.mean_radius, motion, findings);
 
-  if (options.sheet) options.sheet(contact_sheet(path, findings, motion));
+  if (options.sheet) options.sheet(contact_sheet(path, shown, pass.kept, findings, motion));
   if (options.overlay)
     draw_film(path, findings, motion, options.overlay,
               [&](double done) { report(progress, kPassShare + (1 - kPassShare) * done); });
