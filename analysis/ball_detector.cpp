@@ -5,6 +5,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "analysis/ball_rim.h"
+#include "analysis/shrink.h"
 
 namespace tumble::analysis {
 namespace {
@@ -48,7 +49,10 @@ Scaled scaled_for(const cv::Mat& bgr, const cv::Rect& window, double radius) {
   const cv::Size size(std::max(16, static_cast<int>(std::lround(window.width * scale))),
                       std::max(16, static_cast<int>(std::lround(window.height * scale))));
   Scaled s;
-  cv::resize(bgr(window), s.bgr, size, 0, 0, scale < 1 ? cv::INTER_AREA : cv::INTER_LINEAR);
+  if (scale < 1)
+    s.bgr = shrink(bgr(window), size);
+  else
+    cv::resize(bgr(window), s.bgr, size, 0, 0, cv::INTER_LINEAR);
   s.u0 = window.x;
   s.v0 = window.y;
   s.scale_u = static_cast<double>(size.width) / window.width;

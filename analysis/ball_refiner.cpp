@@ -1,6 +1,8 @@
 #include "analysis/ball_refiner.h"
 
+#include <Eigen/Core>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
@@ -15,14 +17,33 @@ namespace {
 
 constexpr int kPatch = 24, kBatch = 8, kAnswers = 5;
 
-// The patch round a ball, of mean 0 and deviation about 1.
+// The patch round a ball, of mean 0 and deviation about 1. Linear between pixels, first along the rows.
 void fill_patch(const cv::Mat& bgr, double u, double v, float* input) {
-  cv::Mat patch(kPatch, kPatch, CV_32FC3, input);
-  cv::getRectSubPix(bgr, patch.size(), {static_cast<float>(u), static_cast<float>(v)}, patch, CV_32F);
-  cv::Scalar mean, deviation;
-  cv::meanStdDev(patch.reshape(1), mean, deviation);
-  const double scale = 1 / (deviation[0] + 6);
-  patch.convertTo(patch, CV_32F, scale, -mean[0] * scale);
+  constexpr int kRow = 3 * kPatch;
+  const double u0 = u - 0.5 * (kPatch - 1), v0 = v - 0.5 * (kPatch - 1);
+  const cv::Rect from(std::clamp(static_cast<int>(std::floor(u0)), -kPatch, bgr.cols - 1),
+                      std::clamp(static_cast<int>(std::floor(v0)), -kPatch, bgr.rows - 1), kPatch + 1, kPatch + 1);
+  const auto fu = static_cast<float>(u0 - std::floor(u0)), fv = static_cast<float>(v0 - std::floor(v0));
+  const cv::Rect inside = from & cv::Rect({0, 0}, bgr.size());
+  cv::Mat part = bgr(inside);
+  if (inside != from)
+    cv::copyMakeBorder(part, part, inside.y - from.y, from.br().y - inside.br().y, inside.x - from.x,
+                       from.br().x - inside.br().x, cv::BORDER_REPLICATE | cv::BORDER_ISOLATED);
+  std::array<std::array<float, kRow>, kPatch + 1> rows;
+  for (int i = 0; i <= kPatch; ++i) {
+    const uchar* levels = part.ptr<uchar>(i);
+    auto& row = rows[static_cast<std::size_t>(i)];
+    for (int k = 0; k < kRow; ++k)
+      row[static_cast<std::size_t>(k)] =
+          (1 - fu) * static_cast<float>(levels[k]) + fu * static_cast<float>(levels[k + 3]);
+  }
+  using Row = Eigen::Array<float, kRow, 1>;
+  Eigen::Map<Eigen::Array<float, kRow, kPatch>> patch(input);
+  for (int i = 0; i < kPatch; ++i)
+    patch.col(i) = (1 - fv) * Eigen::Map<const Row>(rows[static_cast<std::size_t>(i)].data()) +
+                   fv * Eigen::Map<const Row>(rows[static_cast<std::size_t>(i) + 1].data());
+  patch -= patch.mean();
+  patch *= 1 / (std::sqrt(patch.square().mean()) + 6);
 }
 
 }  // namespace

@@ -21,7 +21,7 @@ constexpr double kSharp = 0.5;       // share of such edges from which outlines 
 constexpr double kWhole = 0.6;       // share from which the right circle is found for certain
 constexpr double kAside = 1.2;       // of other starts for it [px]
 constexpr std::size_t kFewest = 12;  // balls to learn from
-constexpr std::size_t kEnough = 80;  // their median share is then known to 0.02
+constexpr std::size_t kEnough = 50;  // their median share is then known to 0.03
 
 // Height of the edge along the rays from a centre, by ray and distance.
 class Rays {
