@@ -69,6 +69,15 @@ TEST(SharedErrors, AnAxisThatIsOffTurnsTheEdgesByItsShareOfTheRadius) {
   EXPECT_NEAR(se_of_toe(0, {off, 0, 0}), degrees(off / (kRadius - kBall)), 0.5);
 }
 
+TEST(SharedErrors, TheCentreOfCirculationGoesWhereTheBallsGo) {
+  Bed bed = a_bed(0);
+  bed.motion.centre_of_circulation_x = {0.05, 0};
+  bed.motion.centre_of_circulation_y = {-0.12, 0};
+  add_shared_errors(bed.motion, bed.geometry, {}, {}, {0.004, 0, 0.02});
+  EXPECT_NEAR(bed.motion.centre_of_circulation_x.se, std::hypot(0.004, 0.02 * 0.12), 1e-5);
+  EXPECT_NEAR(bed.motion.centre_of_circulation_y.se, std::hypot(0.004, 0.02 * 0.05), 1e-5);
+}
+
 TEST(SharedErrors, ScaleIsTheErrorOfLengths) {
   Bed bed = a_bed(0);
   const double before = bed.motion.head.se;
