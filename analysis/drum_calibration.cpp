@@ -12,6 +12,7 @@
 #include "analysis/drum_rings.h"
 #include "analysis/drum_scale.h"
 #include "analysis/drum_turn.h"
+#include "analysis/even_turn.h"
 #include "analysis/film_reader.h"
 #include "core/error.h"
 #include "core/units.h"
@@ -24,23 +25,25 @@ constexpr int kUsualWidth = 640;           // of pictures after reduction [px]: 
 constexpr std::size_t kTrialFrames = 150;  // of them, to choose between views
 constexpr int kPoseFrames = 100;           // of them, for the camera
 constexpr std::size_t kFewestFrames = 8, kFewestSightings = 400;
-constexpr double kLeastTurn = 0.1;    // of the drum during the film, to tell what turns from what stands still [rad]
-constexpr double kBorder = 10;        // within which an edge belongs to the textured surface [px]
-constexpr double kRingAlike = 0.1;    // by which neighbours on an edge err alike [px]
-constexpr double kSlightTilt = 0.04;  // below which the view is as good as frontal to begin with [rad]
-constexpr double kUsualBall = 0.05;   // radius of a ball in shell radii, where neither is known
-constexpr double kShellShare = 0.9;   // of the shell in what turns, roughly
-constexpr double kClearTurn = 0.2;    // coherence of a ring whose turn is beyond doubt
-constexpr double kFrontShare = 0.7;   // of the rim's radius, outside of which marks are in the plane of the glass
-constexpr double kRoughTurn = 0.02;   // by which first angles may be off [rad]
-constexpr double kCovered = 1.7;      // times by which a piece looks less like itself than usual where balls cover it
-constexpr double kEnough = 0.35;      // of the pieces of one band
-constexpr double kClearTwist = 3;     // standard errors from which a picture is read out line by line
-constexpr double kMarkHeight = 0.03;  // by which marks may lie before the inside of the glass, in shell radii
-constexpr double kNoTwist = 0.005;    // readout that is as good as none [frame periods]
-constexpr double kSameTilt = 0.05;    // between views that are one [rad]
-constexpr double kClearMisfit = 0.1;  // between views, of which one is clearly better
-constexpr double kFinestBlur = 0.7;   // [px]
+constexpr double kLeastTurn = 0.1;     // of the drum during the film, to tell what turns from what stands still [rad]
+constexpr double kBorder = 10;         // within which an edge belongs to the textured surface [px]
+constexpr double kRingAlike = 0.1;     // by which neighbours on an edge err alike [px]
+constexpr double kSlightTilt = 0.04;   // below which the view is as good as frontal to begin with [rad]
+constexpr double kUsualBall = 0.05;    // radius of a ball in shell radii, where neither is known
+constexpr double kShellShare = 0.9;    // of the shell in what turns, roughly
+constexpr double kClearTurn = 0.2;     // coherence of a ring whose turn is beyond doubt
+constexpr double kRing = 0.7;          // of a disc's radius: from there on it is unrolled first
+constexpr double kClearlyWider = 1.2;  // times by which another disc is larger
+constexpr double kFrontShare = 0.7;    // of the rim's radius, outside of which marks are in the plane of the glass
+constexpr double kRoughTurn = 0.02;    // by which first angles may be off [rad]
+constexpr double kCovered = 1.7;       // times by which a piece looks less like itself than usual where balls cover it
+constexpr double kEnough = 0.35;       // of the pieces of one band
+constexpr double kClearTwist = 3;      // standard errors from which a picture is read out line by line
+constexpr double kMarkHeight = 0.03;   // by which marks may lie before the inside of the glass, in shell radii
+constexpr double kNoTwist = 0.005;     // readout that is as good as none [frame periods]
+constexpr double kSameTilt = 0.05;     // between views that are one [rad]
+constexpr double kClearMisfit = 0.1;   // between views, of which one is clearly better
+constexpr double kFinestBlur = 0.7;    // [px]
 
 struct Sample {
   std::vector<cv::Mat> greys;
@@ -154,8 +157,12 @@ DrumTurn first_turn(const Sample& sample, const DrumPose& pose, const PolarGrid&
   const DrumTexture blank(unroll, still, 1.5);
   std::vector<RoundSpectrum> spectra;
   for (const cv::Mat& s : strips) spectra.emplace_back(blank.moving_part(s));
-  return follow_turn(std::move(spectra), expected_step);
+  cv::Mat in_view;
+  cv::reduce(unroll.in_view(), in_view, 0, cv::REDUCE_AVG, CV_32F);
+  return follow_turn(std::move(spectra), {in_view.begin<float>(), in_view.end<float>()}, expected_step);
 }
+
+double turned(const DrumTurn& turn) { return std::abs(turn.angles.back() - turn.angles.front()); }
 
 // The part of a disc to be unrolled, from a share of its radius to somewhat beyond.
 PolarGrid ring_grid(double radius, double inner) {
@@ -164,6 +171,39 @@ PolarGrid ring_grid(double radius, double inner) {
   grid.rows = static_cast<int>(std::ceil((1.14 - inner) * radius / 6)) * 6;
   grid.columns = radius < 230 ? 1024 : 2048;
   return grid;
+}
+
+// The view in which most of a disc holds together as it turns.
+struct FirstView {
+  DrumTurn turn;
+  DrumPose pose;
+  PolarGrid grid;
+  bool even = false;           // it turns as a drum does
+  bool ring_misleads = false;  // the ring at the shell does not
+};
+
+bool is_clear(const FirstView& view) { return view.even && view.turn.coherence > kClearTurn; }
+
+FirstView first_view(const Sample& sample, const TurningDisc& disc, double expected_step) {
+  FirstView view;
+  const auto poses = likely_poses(sample, disc, usual_camera(sample.mean.size(), disc.radius));
+  for (const double inner : {kRing, 0.15}) {  // flange, shell and lifters; else marks on the back plate may tell
+    const PolarGrid grid = ring_grid(disc.radius, inner);
+    const bool ring_is_clear = view.turn.coherence > kClearTurn;
+    for (const DrumPose& pose : poses) {
+      DrumTurn seen = first_turn(sample, pose, grid, expected_step, poses.size() > 1 ? kTrialFrames : kMostFrames);
+      const bool even = seen.found && turned(seen) >= kLeastTurn && evenness_of(seen.angles).even;
+      // A charge that slides along the shell may hold together better than what little is seen of the drum.
+      if (even != view.even ? !even : seen.coherence <= view.turn.coherence) continue;
+      if (inner < kRing && !even && ring_is_clear)
+        continue;  // neither is the drum: what is next to the shell is nearer
+      view = {std::move(seen), pose, grid, even, inner < kRing && ring_is_clear};
+    }
+    if (is_clear(view)) break;
+  }
+  if (view.turn.found && view.turn.angles.size() < sample.greys.size())
+    view.turn = first_turn(sample, view.pose, view.grid, expected_step, kMostFrames);
+  return view;
 }
 
 // Radius within which things turn with the drum.
@@ -374,6 +414,17 @@ double place_error(const PoseFit& fit, double shell) {
   return std::sqrt((by * fit.covariance * by.transpose()).trace() / static_cast<double>(n));
 }
 
+double share_in_view(const MillCamera& camera, double radius) {
+  constexpr int kDirections = 360;
+  int seen = 0;
+  for (int k = 0; k < kDirections; ++k) {
+    const double a = 2 * kPi * k / kDirections;
+    const cv::Point2d p = picture_of(camera, {radius * std::cos(a), radius * std::sin(a), 0});
+    seen += p.x >= 0 && p.y >= 0 && p.x < camera.width && p.y < camera.height;
+  }
+  return static_cast<double>(seen) / kDirections;
+}
+
 }  // namespace
 
 DrumView calibrate_drum(const std::string& path, const Config& known, const Progress& progress) {
@@ -398,31 +449,30 @@ DrumView calibrate_drum(const NextPicture& next, double frames_per_second, const
                     sample.greys.size(), kFewestFrames));
   TurningDisc disc = find_turning_disc(sample.mean, sample.coarse_deviation);
   if (!disc.found) return refuse("no turning drum was found in the film");
-  PosePrior prior = usual_camera(sample.mean.size(), disc.radius);
-  PolarGrid grid;
-  DrumPose start;
-  DrumTurn turn;
   const double expected = speed_rpm(known.mill) * 2 * kPi / 60 / sample.fps;
-  const auto poses = likely_poses(sample, disc, prior);
-  for (double inner : {0.70, 0.15}) {  // flange, shell and lifters; else marks on the back plate may tell
-    grid = ring_grid(disc.radius, inner);
-    for (const DrumPose& pose : poses) {
-      DrumTurn seen = first_turn(sample, pose, grid, expected, poses.size() > 1 ? kTrialFrames : kMostFrames);
-      if (seen.coherence <= turn.coherence) continue;
-      turn = std::move(seen);
-      start = pose;
-    }
-    if (turn.coherence > kClearTurn) break;
+  FirstView first;
+  if (disc.wider > kClearlyWider * disc.radius) {
+    TurningDisc wide = disc;
+    wide.radius = disc.wider;
+    wide.moving_besides = 0;
+    first = first_view(sample, wide, expected);
+    if (is_clear(first))
+      disc = wide;
+    else
+      first = {};
   }
-  if (turn.angles.size() < sample.greys.size() && turn.found)
-    turn = first_turn(sample, start, grid, expected, kMostFrames);
-  if (!turn.found) return refuse("nothing in the film turns about a common axis");
-  if (std::abs(turn.angles.back() - turn.angles.front()) < kLeastTurn)
-    return refuse("the drum hardly turns while it is filmed");
+  if (!first.turn.found) first = first_view(sample, disc, expected);
+  DrumTurn& turn = first.turn;
+  const DrumPose& start = first.pose;
+  PolarGrid& grid = first.grid;
+  const PosePrior prior = usual_camera(sample.mean.size(), disc.radius);
+  if (!turn.found || (!first.even && turn.coherence < kClearTurn))
+    return refuse("nothing in the film turns evenly about a common axis");
+  if (turned(turn) < kLeastTurn) return refuse("the drum hardly turns while it is filmed");
   // Other things move too: the drum reaches as far as anything turns with it.
   const double reach = textured_reach(sample, start, grid, turn);
   if (reach < 0.92 * disc.radius) disc.radius = reach;
-  if (reach > kFrontShare * disc.radius) grid = ring_grid(disc.radius, 0.70);
+  if (reach > kFrontShare * disc.radius && !first.ring_misleads) grid = ring_grid(disc.radius, kRing);
   const Camera camera = fit_camera(sample, start, grid, turn, disc.radius, prior, progress);
   if (!camera.found) return refuse("too little of the drum shows marks that turn with it");
   const DrumPose& pose = camera.fit.pose;
@@ -487,6 +537,8 @@ DrumView calibrate_drum(const NextPicture& next, double frames_per_second, const
   view.centre_v = {axis.y, std::hypot(sum_error(DrumPose::kOriginV, DrumPose::kCentreV), ahead.y)};
   view.place_error = std::hypot(view.place_error, height * std::tan(obliqueness(view.camera)));
   view.obliqueness = {obliqueness(view.camera), std::hypot(error(DrumPose::kTiltX), error(DrumPose::kTiltY))};
+
+  view.in_view = share_in_view(view.camera, unit * shell.radius);
 
   const double tip = known.mill.lifters.height > 0 && mill_radius > 0
                          ? shell.radius * (1 - known.mill.lifters.height / mill_radius)

@@ -39,6 +39,7 @@ struct DrumView {
   std::vector<RingFound> rings;              // innermost first
   cv::Mat hidden;                            // 8 bit, 255 where something that stands still covers the drum
   std::vector<double> hidden_share;          // of the ring just inside the lifter tips, by degree from 3 o'clock
+  double in_view = 1;                        // share of the shell that lies within the picture
   std::shared_ptr<const DrumReader> reader;  // the drum's angle in any further picture
   std::vector<std::string> caveats;
 };

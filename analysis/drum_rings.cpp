@@ -139,11 +139,11 @@ TurningDisc find_turning_disc(const cv::Mat& mean, const cv::Mat& deviation) {
   if (!(disc.axis.x > -0.2 * mean.cols && disc.axis.y > -0.2 * mean.rows && disc.axis.x < 1.2 * mean.cols &&
         disc.axis.y < 1.2 * mean.rows))
     return disc;
-  // The outermost circle that moves nearly all round. One that lies mostly outside of the picture is taken only where
-  // no other is seen: what else moves in the film may well fill the little of it that is in view.
+  // The outermost circle that moves nearly all round. One that lies mostly outside of the picture comes second: what
+  // else moves in the film may well fill the little of it that is in view.
   const int most = static_cast<int>(std::hypot(mean.cols, mean.rows));
-  for (const double least_in_view : {0.55, 0.2}) {
-    for (int r = most; disc.radius == 0 && r > 0.1 * std::min(mean.rows, mean.cols); --r) {
+  const auto outermost = [&](double least_in_view) {
+    for (int r = most; r > 0.1 * std::min(mean.rows, mean.cols); --r) {
       int in_view = 0, moves = 0;
       for (int k = 0; k < kDirections; ++k) {
         const int u = static_cast<int>(std::lround(disc.axis.x + r * std::cos(2 * kPi * k / kDirections)));
@@ -152,10 +152,14 @@ TurningDisc find_turning_disc(const cv::Mat& mean, const cv::Mat& deviation) {
         ++in_view;
         moves += moving.at<uchar>(v, u) != 0;
       }
-      if (in_view >= least_in_view * kDirections && moves >= kMovingShare * in_view) disc.radius = r;
+      if (in_view >= least_in_view * kDirections && moves >= kMovingShare * in_view) return r;
     }
-  }
+    return 0;
+  };
+  const int whole = outermost(0.55), part = outermost(0.2);
+  disc.radius = whole > 0 ? whole : part;
   if (disc.radius == 0) return disc;
+  if (part > disc.radius) disc.wider = part;
   double besides = 0;
   for (int v = 0; v < moving.rows; ++v)
     for (int u = 0; u < moving.cols; ++u)

@@ -25,6 +25,7 @@ struct TurningDisc {
   bool found = false;
   cv::Point2d axis;
   double radius = 0;          // outermost at which things move nearly all round [px]
+  double wider = 0;           // outermost of those that lie mostly outside of the picture, if larger [px]; 0: none
   double moving_besides = 0;  // area outside of it where things move, in areas of the disc
 };
 

@@ -16,6 +16,7 @@ constexpr double kGreyNoise = 0.5;     // of a group's mean [grey levels]: bands
 constexpr std::size_t kTrial = 80;     // pictures that show which of several turns is the drum's
 constexpr double kStill = 0.03;        // turn during the trial below which nothing turns [rad]
 constexpr double kUnsteady = 0.08;     // of the turn from picture to picture, as a share
+constexpr double kLeastOverlap = 0.1;  // of the most: matches of so little are left alone
 constexpr double kNearEqual = 0.85;    // of the best match
 constexpr double kBelievedNear = 0.5;  // of the best match anywhere: one within reach is believed
 
@@ -161,16 +162,65 @@ double median_step(const std::vector<double>& angles) {
   return *middle;
 }
 
+// How much of the drum's directions both a picture and the mean of others show, by the turn between them. Where part of
+// the drum is out of the picture, what comes into view is not in the mean yet, and a match of less turn would gain by
+// it.
+class Overlap {
+ public:
+  explicit Overlap(const std::vector<float>& in_view) : in_view_(in_view), shown_(in_view.size(), 0.0F) {
+    whole_ = std::all_of(in_view.begin(), in_view.end(), [&](float v) { return v == in_view.front(); });
+  }
+
+  void add(double angle) {
+    if (whole_) return;
+    const std::size_t n = shown_.size(), turn = columns_of(angle);
+    for (std::size_t k = 0; k < n; ++k) shown_[k] += in_view_[(k + turn) % n];
+  }
+
+  // Matches at `from` to `to` [columns], as if all turns showed as much.
+  void even_out(std::vector<float>& match, double from, double to) const {
+    if (whole_) return;
+    const long n = static_cast<long>(shown_.size());
+    std::vector<double> overlap;
+    for (long c = std::lround(from) - 1; c <= std::lround(to) + 1; ++c) {
+      double sum = 0;
+      const auto turn = static_cast<std::size_t>(((c % n) + n) % n);
+      for (std::size_t k = 0; k < shown_.size(); ++k) sum += shown_[k] * in_view_[(k + turn) % shown_.size()];
+      overlap.push_back(sum);
+    }
+    const double most = *std::max_element(overlap.begin(), overlap.end());
+    for (std::size_t i = 0; i < overlap.size(); ++i) {
+      const long c = std::lround(from) - 1 + static_cast<long>(i);
+      if (overlap[i] > kLeastOverlap * most)
+        match[static_cast<std::size_t>(((c % n) + n) % n)] *= static_cast<float>(most / overlap[i]);
+    }
+  }
+
+ private:
+  std::size_t columns_of(double angle) const {
+    const long n = static_cast<long>(shown_.size()), c = std::lround(angle / (2 * kPi) * static_cast<double>(n));
+    return static_cast<std::size_t>(((c % n) + n) % n);
+  }
+
+  const std::vector<float>& in_view_;
+  std::vector<float> shown_;
+  bool whole_ = true;
+};
+
 // Picture by picture against the mean of those before, turned back: the charge washes out of it and errors do not add
 // up.
-std::vector<double> follow(const std::vector<RoundSpectrum>& pictures, double step, std::size_t count) {
+std::vector<double> follow(const std::vector<RoundSpectrum>& pictures, const std::vector<float>& in_view, double step,
+                           std::size_t count) {
   const double columns = pictures[0].orders().cols, pitch = 2 * kPi / columns;
   std::vector<double> angles{0.0};
   RoundSpectrum mean;
+  Overlap overlap(in_view);
   mean.add_turned_back(pictures[0], 0);
+  overlap.add(0);
   for (std::size_t t = 1; t < count; ++t) {
-    const auto match = mean.match(pictures[t]);
+    auto match = mean.match(pictures[t]);
     const double last = angles.back() / pitch, reach = kUnsteady * std::abs(step) + 1.5;
+    overlap.even_out(match, last + std::min(0.0, 3 * step) - reach, last + std::max(0.0, 3 * step) + reach);
     // As usual, a repeated picture, one or two missing; anything else must match much better to be believed.
     Peak best = best_within(match, last + step, reach);
     for (double times : {0.0, 2.0, 3.0}) {
@@ -179,6 +229,7 @@ std::vector<double> follow(const std::vector<RoundSpectrum>& pictures, double st
     }
     angles.push_back(best.shift * pitch);
     mean.add_turned_back(pictures[t], angles.back());
+    overlap.add(angles.back());
   }
   return angles;
 }
@@ -203,7 +254,7 @@ RoundSpectrum turned_back(const std::vector<RoundSpectrum>& pictures, const std:
 
 }  // namespace
 
-DrumTurn follow_turn(std::vector<RoundSpectrum> pictures, double expected_step) {
+DrumTurn follow_turn(std::vector<RoundSpectrum> pictures, const std::vector<float>& in_view, double expected_step) {
   DrumTurn turn;
   const std::size_t n = pictures.size();
   if (n < 3) return turn;
@@ -219,7 +270,7 @@ DrumTurn follow_turn(std::vector<RoundSpectrum> pictures, double expected_step) 
     for (const RoundSpectrum& p : pictures) some.push_back(p.bands(range));
     const double s = commonest_turn(some, std::abs(expected_step) / pitch);
     if (std::isnan(s)) continue;
-    const auto angles = follow(some, s, std::min(n, kTrial));
+    const auto angles = follow(some, in_view, s, std::min(n, kTrial));
     if (std::abs(angles.back()) < kStill) continue;  // noise that the film's compression keeps from picture to picture
     turned_back(some, angles, coherence);
     const double best = *std::max_element(coherence.begin(), coherence.end());
@@ -233,14 +284,19 @@ DrumTurn follow_turn(std::vector<RoundSpectrum> pictures, double expected_step) 
     if (round == 0) {
       std::vector<RoundSpectrum> some;
       for (const RoundSpectrum& p : pictures) some.push_back(p.bands(chosen));
-      turn.angles = follow(some, step, n);
+      turn.angles = follow(some, in_view, step, n);
     } else if (round == 1) {
-      turn.angles = follow(pictures, step, n);
+      turn.angles = follow(pictures, in_view, step, n);
     } else {
       const double first = turn.angles[0];
-      for (std::size_t t = 0; t < n; ++t)
-        turn.angles[t] =
-            best_within(turn.pattern.match(pictures[t]), (turn.angles[t] - first) / pitch, 4).shift * pitch;
+      Overlap overlap(in_view);
+      for (const double a : turn.angles) overlap.add(a);
+      for (std::size_t t = 0; t < n; ++t) {
+        auto match = turn.pattern.match(pictures[t]);
+        const double about = (turn.angles[t] - first) / pitch;
+        overlap.even_out(match, about - 4, about + 4);
+        turn.angles[t] = best_within(match, about, 4).shift * pitch;
+      }
     }
     step = median_step(turn.angles) / pitch;
     turn.pattern = turned_back(pictures, turn.angles, coherence);

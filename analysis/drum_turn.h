@@ -39,10 +39,11 @@ struct DrumTurn {
   double coherence = 0;        // share of what moves that turns with the drum
 };
 
-// No uniform turning is supposed: pictures may be repeated or missing. `expected_step`: size of the turn from picture
+// No uniform turning is supposed: pictures may be repeated or missing. `in_view`: share of each column that is in the
+// picture. `expected_step`: size of the turn from picture
 // to picture where the speed is known roughly [rad], else NaN; it decides only between turns that match alike, as
 // those of a drum with nothing but equal lifters do.
-DrumTurn follow_turn(std::vector<RoundSpectrum> pictures, double expected_step);
+DrumTurn follow_turn(std::vector<RoundSpectrum> pictures, const std::vector<float>& in_view, double expected_step);
 
 // Angle of one picture against a pattern [rad]: the best match about `expected`, of near equals the nearest to it;
 // elsewhere only where nothing is found there. `step`: usual turn from picture to picture.

@@ -197,6 +197,22 @@ TEST(DrumCalibration, RimOutsideOfThePictureIsNoHindrance) {
   EXPECT_LT(worst_angle(view, film), 0.1 * kPi / 180);
 }
 
+// A third of the rim in view: the circle that is all in view is a part of the back plate.
+TEST(DrumCalibration, ADrumMostlyOutsideOfThePictureIsFound) {
+  for (const double step : {0.03, -0.03}) {
+    PaintedDrum drum = seen_from(0, 0);
+    drum.camera = camera_for(kPicture, 700, 0.0, 0.0, 1.0 * kPicture.height, drum.rim, {470, 300}, 0);
+    drum.step = step;
+    const DrumView view = calibrated(film_of(drum, std::vector<int>(60, 1)));
+    ASSERT_TRUE(view.found);
+    EXPECT_LT(view.in_view, 0.5);
+    EXPECT_NEAR(view.turn_per_frame.value, step, 0.05 * std::abs(step));  // marks on the back plate seem slower here
+    const cv::Point2d axis = picture_of(drum.camera, Eigen::Vector3d::Zero());
+    EXPECT_NEAR(view.centre_u.value, axis.x, 5);
+    EXPECT_NEAR(view.centre_v.value, axis.y, 5);
+  }
+}
+
 TEST(DrumCalibration, AStillMillIsRefusedWithAReason) {
   const Film film = film_of(seen_from(0, 0), std::vector<int>(20, 0));
   const DrumView view = calibrated(film);
