@@ -170,6 +170,11 @@ BallPlane measure_ball_plane(const std::vector<SeenFrame>& frames, double mill_r
     std::nth_element(sides.begin(), outer, sides.end());
     plane.outermost = *outer;
   }
+  plane.factor = lengths_factor(plane, prior);
+  return plane;
+}
+
+Estimate lengths_factor(const BallPlane& plane, const Estimate& prior) {
   double weight = 0, sum = 0, squares = 0, witnesses = 0;
   const auto add = [&](const Estimate& e, double floor) {
     if (std::isnan(e.value)) return;
@@ -183,12 +188,10 @@ BallPlane measure_ball_plane(const std::vector<SeenFrame>& frames, double mill_r
   add({plane.touching.value, plane.touching.se}, 0.003);
   add({plane.reach.value, plane.reach.se}, 0.002);
   if (!std::isnan(prior.value)) add({1 / prior.value, prior.se}, 0.0);
-  if (weight > 0) {
-    // Witnesses that contradict each other know less than they say (Birge 1932).
-    const double chi2 = witnesses > 1 ? (squares - sum * sum / weight) / (witnesses - 1) : 1.0;
-    plane.factor = {weight / sum, std::sqrt(std::max(1.0, chi2) / weight)};
-  }
-  return plane;
+  if (!(weight > 0)) return {};
+  // Witnesses that contradict each other know less than they say (Birge 1932).
+  const double chi2 = witnesses > 1 ? (squares - sum * sum / weight) / (witnesses - 1) : 1.0;
+  return {weight / sum, std::sqrt(std::max(1.0, chi2) / weight)};
 }
 
 DepthDoubt depth_doubt(bool one_layer, double length, double radius, double distance, double focal_error) {

@@ -25,6 +25,9 @@ struct BallPlane {
 // the factor, before the balls are asked.
 BallPlane measure_ball_plane(const std::vector<SeenFrame>& frames, double mill_radius, const Estimate& prior);
 
+// The factor alone, of witnesses that are not NaN.
+Estimate lengths_factor(const BallPlane& plane, const Estimate& prior);
+
 // What the unknown depth of the balls behind the glass does to lengths.
 struct DepthDoubt {
   double place_error = 0;  // relative standard error of places, as for balls that touch the glass, by it

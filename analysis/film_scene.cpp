@@ -57,16 +57,34 @@ bool drawn_from_afar(const BallPlane& near, const BallPlane& afar) {
 // By how much touching balls and those against the shell contradict each other.
 double contradiction(const BallPlane& plane) { return std::abs(plane.touching.value / plane.reach.value - 1); }
 
+// Relative distance from `radius` of the nearest edge that goes round nearly all of the drum; large where there is
+// none.
+double edge_off(const FilmScene& scene, double radius) {
+  constexpr double kAllRound = 0.9;  // of the directions
+  double least = 1;
+  for (const RingFound& ring : scene.drum.rings)
+    if (ring.coverage > kAllRound) least = std::min(least, std::abs(ring.radius / radius - 1));
+  return least;
+}
+
 // What was taken for the shell may be another circle. Where mill and balls are known and the balls' touching
-// contradicts it, its scale is tried without it: if they then stop at the shell, two witnesses outvote one.
+// contradicts it, its scale is tried without it: if they then stop at the shell, two witnesses outvote one. Balls that
+// do not fit between the lifters stop before it, anywhere from the tips on: then an edge all round must be the second.
 void doubt_shell(const FilmPass& pass, FilmScene& scene, BallPlane& plane) {
   constexpr double kClear = 0.03, kAgreement = 0.012;
   constexpr double kRough = 0.02;  // of a scale by touching balls
   if (!(std::abs(plane.touching.value - 1) > kClear) || contradiction(plane) < kClear) return;
   FilmScene other = scene;
   multiply_lengths(other, 1 / plane.touching.value);
-  const BallPlane by_balls = measure_ball_plane(sample_of(pass, other), other.radius, {1.0, kRough});
-  if (!(contradiction(by_balls) < kAgreement)) return;
+  BallPlane by_balls = measure_ball_plane(sample_of(pass, other), other.radius, {1.0, kRough});
+  if (!(contradiction(by_balls) < kAgreement)) {
+    const double ball = *std::max_element(scene.radii.begin(), scene.radii.end());
+    const double tips = (scene.tip_radius - ball) / (scene.radius - ball), reach = by_balls.reach.value;
+    const bool on_lifters = scene.tip_radius < scene.radius && reach < 1 && reach > tips - kAgreement;
+    if (!on_lifters || edge_off(scene, scene.radius * plane.touching.value) > kAgreement) return;
+    by_balls.reach = {};
+    by_balls.factor = lengths_factor(by_balls, {1.0, kAgreement});
+  }
   scene = std::move(other);
   plane = by_balls;
 }
@@ -136,26 +154,28 @@ void settle_lengths(FilmScene& scene, const FilmPass& pass, const std::vector<do
                         scene.drum.focal.se / scene.drum.focal.value);
   }
   scene.place_error = std::hypot(plane.factor.se, depth.place_error);
-  scene.glass_error = std::hypot(scene.place_error, depth.glass_error);
-
   if (mill_known && sizes_known) {
     multiply_lengths(scene, plane.factor.value);
     if (plane.outermost < kReachesShell)
       caveats.push_back(
           fmt::format("no ball is seen near a shell of mill.diameter {:.4g} m: check mill.diameter and charge.balls",
                       2 * scene.radius));
-    if (!std::isnan(plane.touching.value) && !std::isnan(plane.reach.value) && contradiction(plane) > 0.03)
+    if (contradiction(plane) > 0.03) {
+      scene.place_error = std::hypot(scene.place_error, contradiction(plane));  // either may be right, or neither
       caveats.push_back(
           fmt::format("the balls' sizes and the mill's diameter do not fit together: by the distance at which balls "
                       "touch, the mill "
                       "would be {:.1f} % {} than mill.diameter; check mill.diameter and charge.balls",
                       100 * std::abs(plane.reach.value / plane.touching.value - 1),
                       plane.reach.value > plane.touching.value ? "larger" : "smaller"));
+    }
   } else {
     if (!std::isnan(plane.touching.value))
       for (double& r : scene.radii) r *= plane.touching.value;
     if (sizes_known) scene.metres = sizes.front() / scene.radii.front();
   }
+  if (scene.drum.in_view < kSeenWell) scene.place_error = std::hypot(scene.place_error, kOneSided);
+  scene.glass_error = std::hypot(scene.place_error, depth.glass_error);
   scene.layer_length = std::isnan(mill_length) && scene.one_layer ? 0.0 : mill_length / scene.metres;
 }
 
@@ -164,6 +184,18 @@ SeenFrame places_of(std::span<const FilmBall> balls, double time, const FilmScen
   drop_beyond(frame, scene.radius);
   drop_impossible(frame, scene.layer_length);
   return frame;
+}
+
+std::vector<bool> hidden_bins(const std::vector<double>& share, double roll_deg, bool clockwise, double reach) {
+  std::vector<bool> hidden(360, false);
+  if (share.size() != 360) return hidden;
+  const int beside = static_cast<int>(std::lround(degrees(reach)));
+  for (int i = 0; i < 360; ++i) {
+    const double upright = i + 0.5, seen = (clockwise ? 180 - upright : upright) + roll_deg;
+    if (!(share[static_cast<std::size_t>(wrap_360(seen))] > 0.5)) continue;
+    for (int k = i - beside; k <= i + beside; ++k) hidden[static_cast<std::size_t>((k + 360) % 360)] = true;
+  }
+  return hidden;
 }
 
 }  // namespace tumble::analysis

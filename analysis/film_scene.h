@@ -11,6 +11,10 @@
 
 namespace tumble::analysis {
 
+constexpr double kSeenWell = 0.5;  // share of the shell in the picture, for axis, radius and speed to be as usual
+constexpr double kOneSided =
+    0.05;  // of radius and speed told by one side: what lies deeper seems to be elsewhere there
+
 // Where the mill is in a film's pictures, and in which unit its lengths are.
 struct FilmScene {
   DrumView drum;
@@ -40,5 +44,10 @@ void settle_lengths(FilmScene& scene, const FilmPass& pass, const std::vector<do
 // Places of a frame's balls as for balls that touch the inside of the front glass, as the camera sees them. `time`: its
 // recorded index. What lies beyond the shell, or where no second ball can be, is left out.
 SeenFrame places_of(std::span<const FilmBall> balls, double time, const FilmScene& scene);
+
+// Bins of the ring, upright and counter-clockwise, of which half and more is covered by what stands still (`share`, by
+// degree as seen), or that balls behind it would reach into: those are not found. `reach`: of a ball along the ring
+// [rad].
+std::vector<bool> hidden_bins(const std::vector<double>& share, double roll_deg, bool clockwise, double reach);
 
 }  // namespace tumble::analysis
