@@ -42,6 +42,7 @@ FilmPass look_through(const std::string& path, const DrumView& drum, const BallL
   FilmPass pass;
   std::vector<cv::Mat> pictures(workers * kEach + 1);  // behind the last one of the batch before
   std::size_t count = 0;
+  cv::Mat before_that;
   double expected = 0;
   bool more = true;
   while (more) {
@@ -56,8 +57,12 @@ FilmPass look_through(const std::string& path, const DrumView& drum, const BallL
         expected = angle.angle + drum.turn_per_frame.value;
       }
       pass.drum.push_back(angle);
-      pass.difference.push_back(before.empty() ? kNotGiven
-                                               : picture_difference(before, picture, bound.u, bound.v, bound.radius));
+      const auto difference_to = [&](const cv::Mat& other) {
+        return other.empty() ? kNotGiven : picture_difference(other, picture, bound.u, bound.v, bound.radius);
+      };
+      pass.difference.push_back(difference_to(before));
+      pass.difference_over_two.push_back(difference_to(before_that));
+      before.copyTo(before_that);  // its place is taken by a later picture
       if (std::binary_search(keep.begin(), keep.end(), static_cast<int>(f))) pass.kept.push_back(picture.clone());
     }
     std::vector<std::vector<FilmBall>> balls(count);

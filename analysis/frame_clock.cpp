@@ -23,6 +23,8 @@ constexpr double kCoarse = 0.25;          // error of a step beyond which one mi
 constexpr double kOtherSteps = 1.5;       // frames that may be missing where else the picture jumps
 constexpr double kUnevenness = 0.03;      // of a frame's turn: the least error of an angle
 constexpr double kLeastJump = 0.15;       // logarithm of a picture's difference over the usual: something is missing
+constexpr double kClearGrowth = 5;        // scatters by which pictures two frames apart must differ more, to be asked
+constexpr double kDenied = 0.4;           // of that growth: a gap that shows less of it is none
 constexpr double kWorstFit = 6;           // chi square over freedom
 constexpr std::array<std::size_t, 10> kWidths = {1, 2, 3, 5, 8, 12, 20, 30, 45, 60};  // frames to each side of a gap
 constexpr double kLeastBetter = 10;  // chi square by which a step must beat a change of speed
@@ -60,6 +62,59 @@ std::vector<double> relative_change(std::span<const double> difference) {
   }
   return out;
 }
+
+// What the pictures say of repeats and gaps that the drum's angle suggests. How much more two pictures differ that are
+// two frames apart than neighbours do is what a missing frame must show, and what a repeat must not.
+class Pictures {
+ public:
+  Pictures(const FrameEvidence& evidence, const std::vector<double>& change)
+      : one_(evidence.difference), two_(evidence.difference_over_two), change_(change) {
+    std::vector<double> growths, scatters;
+    const auto add = [](std::vector<double>& to, double value) {
+      if (std::isfinite(value)) to.push_back(value);
+    };
+    for (std::size_t i = 2; i + 1 < two_.size(); ++i) {
+      if (!moves(i) || !moves(i - 1)) continue;
+      add(growths, std::log(two_[i]) - 0.5 * std::log(one_[i] * one_[i - 1]));
+      if (moves(i + 1)) add(scatters, std::log(one_[i]) - 0.5 * std::log(one_[i - 1] * one_[i + 1]));
+    }
+    if (std::min(growths.size(), scatters.size()) < kFewestGrowths) return;
+    growth_ = median(growths);
+    asked_ = growth_ > kClearGrowth * std::max(robust_deviation(growths), robust_deviation(scatters));
+  }
+
+  // Nothing is missing before frame i: it is as like the frame before as its neighbours are to theirs. Light that
+  // changes over the film does so for all of them.
+  bool deny_gap(std::size_t i) const {
+    if (!asked_ || i >= one_.size()) return false;
+    double least = 1e300;
+    for (const std::size_t k : {i - 1, i + 1})
+      if (k > 0 && k < one_.size() && moves(k)) least = std::min(least, one_[k]);
+    return least < 1e300 && std::log(one_[i] / least) < kDenied * growth_;
+  }
+
+  // Frame i is no repeat: seen from the frame before or after, it is another picture than its neighbour.
+  bool deny_repeat(std::size_t i) const {
+    if (!asked_) return false;
+    double least = 1e300;
+    const auto ask = [&](double far, double near) {
+      if (far > 0 && near > 0) least = std::min(least, std::log(far / near));
+    };
+    if (i >= 2 && moves(i - 1)) ask(two_[i], one_[i - 1]);
+    if (i + 1 < two_.size() && moves(i + 1)) ask(two_[i + 1], one_[i + 1]);
+    return least < 1e300 && least > 0.5 * growth_;
+  }
+
+ private:
+  static constexpr std::size_t kFewestGrowths = 8;
+
+  bool moves(std::size_t i) const { return i < change_.size() && change_[i] > std::log(kRepeat); }
+
+  std::span<const double> one_, two_;
+  const std::vector<double>& change_;
+  double growth_ = 0;  // logarithm
+  bool asked_ = false;
+};
 
 struct Drum {  // frames that are no repeats and whose angle is known
   std::vector<int> frame;
@@ -132,6 +187,14 @@ StepFit fit_step(const Drum& drum, std::size_t from, std::size_t to, std::size_t
           kink.chi2 - step.chi2};
 }
 
+// Scatter of single steps about frame k [frames' turns].
+double step_scatter(const Drum& drum, std::size_t k, double speed) {
+  std::vector<double> steps;
+  for (std::size_t i = k > kSpeedWindow ? k - kSpeedWindow : 1; i < std::min(drum.x.size(), k + kSpeedWindow); ++i)
+    if (i != k) steps.push_back((drum.angle[i] - drum.angle[i - 1]) / speed - (drum.x[i] - drum.x[i - 1]));
+  return steps.size() < 4 ? 0.0 : robust_deviation(steps);
+}
+
 // Before frame k of the drum's.
 struct Gap {
   double step = 0, error = 1;  // in frames' turns
@@ -140,11 +203,14 @@ struct Gap {
   double sureness() const { return std::hypot(step / error, std::min(jump, kOdd)); }
 };
 
-Gap judge_gap(const Drum& drum, std::size_t k, double sigma, double jump, const std::vector<char>& suspects) {
+Gap judge_gap(const Drum& drum, std::size_t k, double sigma, double jump, bool denied,
+              const std::vector<char>& suspects) {
   const double speed = local_speed(drum, k);
   Gap gap;
   gap.jump = jump;
   if (!(speed > 0)) return gap;
+  // Angles that are misread at every other frame are off by a frame's turn now and then.
+  const double scatter = step_scatter(drum, k, speed);
   // The shortest stretch that is sharp enough: the speed is even over a short one.
   for (const std::size_t wide : kWidths) {
     const std::size_t from = k > wide ? k - wide : 0, to = std::min(drum.x.size(), k + wide);
@@ -153,10 +219,10 @@ Gap judge_gap(const Drum& drum, std::size_t k, double sigma, double jump, const 
     gap.error = fit.error;
     if (gap.error > kSharp && wide != kWidths.back()) continue;
     const double whole = gap.error > kCoarse ? 1.0 : std::round(gap.step);
-    const bool sure = gap.step > kSure * gap.error && fit.better > kLeastBetter;
+    const bool sure = gap.step > kSure * std::max(gap.error, scatter) && fit.better > kLeastBetter;
     const bool likely = jump >= kOdd && gap.step > kLikely * gap.error && fit.better > 0;
     if (whole >= 1 && std::abs(gap.step - whole) < std::max(0.3, 2.5 * gap.error) && fit.chi2 < kWorstFit &&
-        (sure || likely)) {
+        (sure || likely) && !denied) {
       gap.missing = static_cast<int>(whole);
       return gap;
     }
@@ -199,11 +265,11 @@ Drum drum_of(std::span<const double> angle, const std::vector<char>& repeated) {
 
 // Frames whose picture hardly differs from the one before, unless the drum has turned.
 std::vector<char> find_repeats(const FrameEvidence& evidence, std::size_t n, const std::vector<double>& change,
-                               double change_scatter) {
+                               double change_scatter, const Pictures& pictures) {
   std::vector<char> repeated(n, 0);
   const auto angle_at = [&](std::size_t i) { return i < evidence.angle.size() ? evidence.angle[i] : kNotGiven; };
   const double limit = std::min(std::log(kRepeat), -kOdd * change_scatter);
-  for (std::size_t i = 1; i < n; ++i) repeated[i] = i < change.size() && change[i] < limit;
+  for (std::size_t i = 1; i < n; ++i) repeated[i] = i < change.size() && change[i] < limit && !pictures.deny_repeat(i);
   const Drum drum = drum_of(evidence.angle, repeated);
   if (drum.x.size() < 8) return repeated;
   const double sigma = angle_noise(drum, evidence.angle_sigma);
@@ -217,7 +283,7 @@ std::vector<char> find_repeats(const FrameEvidence& evidence, std::size_t n, con
     const bool turned = turn > 0.5 * speed && turn > 4 * scatter;
     const bool stood = turn < 0.5 * speed && speed - turn > kSure * scatter && std::abs(turn) < 4 * scatter;
     const bool less = i >= change.size() || std::isnan(change[i]) || change[i] < -2 * change_scatter;
-    repeated[i] = (repeated[i] && !turned) || (stood && less);
+    repeated[i] = (repeated[i] && !turned) || (stood && less && !pictures.deny_repeat(i));
   }
   return repeated;
 }
@@ -254,7 +320,9 @@ FrameClock find_frame_clock(const FrameEvidence& evidence) {
   const double scatter = usual.size() < 4 ? 0.1 : std::max(0.02, robust_deviation(usual));
   const double middle = usual.empty() ? 0.0 : median(usual);
 
-  const std::vector<char> repeated = find_repeats(evidence, n, change, scatter);
+  const Pictures pictures(evidence, change);
+
+  const std::vector<char> repeated = find_repeats(evidence, n, change, scatter, pictures);
   std::vector<int> step(n, 1);  // recorded frames from the one before
   for (std::size_t i = 1; i < n; ++i)
     if (repeated[i]) {
@@ -275,7 +343,10 @@ FrameClock find_frame_clock(const FrameEvidence& evidence) {
     std::vector<Gap> gaps(drum.x.size());
     std::size_t from = 1, to = drum.x.size();
     for (;;) {  // the surest first: what is missing elsewhere blurs the others
-      for (std::size_t k = from; k < to; ++k) gaps[k] = judge_gap(drum, k, sigma, jump(k), suspects);
+      for (std::size_t k = from; k < to; ++k) {
+        const bool denied = pictures.deny_gap(static_cast<std::size_t>(drum.frame[k]));
+        gaps[k] = judge_gap(drum, k, sigma, jump(k), denied, suspects);
+      }
       std::size_t best = 0;
       for (std::size_t k = 1; k < gaps.size(); ++k)
         if (gaps[k].missing > 0 && (best == 0 || gaps[k].sureness() > gaps[best].sureness())) best = k;

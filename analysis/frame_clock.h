@@ -15,8 +15,10 @@ double picture_difference(const cv::Mat& before, const cv::Mat& now, double cent
 
 struct FrameEvidence {                 // one value a frame of the file
   std::span<const double> difference;  // to the frame before, any unit; NaN where unknown, as for the first; or empty
-  std::span<const double> angle;       // of the drum, unwrapped, growing [rad]; NaN where unknown; or empty
-  double angle_sigma = kNotGiven;      // its standard deviation [rad]; NaN, or too small: found from the angles
+  // To the frame before the last, likewise; or empty. It shows what one missing frame would look like in this film.
+  std::span<const double> difference_over_two;
+  std::span<const double> angle;   // of the drum, unwrapped, growing [rad]; NaN where unknown; or empty
+  double angle_sigma = kNotGiven;  // its standard deviation [rad]; NaN, or too small: found from the angles
 };
 
 struct DroppedFrames {

@@ -9,6 +9,7 @@
 #include "analysis/charge_motion.h"
 #include "analysis/charge_statistics.h"
 #include "analysis/drum_speed.h"
+#include "analysis/even_turn.h"
 #include "analysis/film_findings.h"
 #include "analysis/film_paths.h"
 #include "analysis/film_reader.h"
@@ -28,6 +29,8 @@ constexpr double kCalibrateShare = 0.2;  // of the work, for the progress
 constexpr double kPassShare = 0.95;
 constexpr double kWorstRoll = 1.5;    // standard error beyond which a camera's roll is not believed [degrees]
 constexpr double kUnknownRoll = 2.0;  // of a camera that was levelled by eye, standard [degrees]
+
+constexpr double kFarOff = 0.2;  // of the mill's nominal speed: another one is no measurement of it
 
 const char* const kNoBalls = "shows no balls; balls of at least 3 pixels' radius were expected in the mill";
 
@@ -65,15 +68,19 @@ struct Timeline {
   std::vector<std::size_t> shown;   // frames of the file without the repeats
   std::vector<std::size_t> row_of;  // by frame of the file: in `shown`
   Estimate turn;                    // of the drum per recorded frame, as seen [rad]
+  bool even = true;                 // it can be the drum's
 };
 
 Timeline timeline_of(const FilmPass& pass, const DrumView& drum, double sense_seen) {
   std::vector<double> angles;
   for (const DrumAngle& d : pass.drum) angles.push_back(sense_seen * d.angle);
+  Timeline line;
   FrameEvidence evidence;
   evidence.difference = pass.difference;
-  evidence.angle = angles;
-  Timeline line;
+  evidence.difference_over_two = pass.difference_over_two;
+  const Evenness evenness = evenness_of(angles);
+  line.even = evenness.even;
+  if (line.even) evidence.angle = angles;  // else they are not the drum's, and may not accuse frames
   line.clock = find_frame_clock(evidence);
   std::vector<double> times;
   std::vector<DrumAngle> turned;
@@ -86,6 +93,8 @@ Timeline timeline_of(const FilmPass& pass, const DrumView& drum, double sense_se
     line.row_of.push_back(line.shown.size() - 1);
   }
   line.turn = turn_of_drum(times, turned, drum.reader != nullptr ? drum.reader->alike() : 0.0);
+  if (!line.even) line.turn.se = std::hypot(line.turn.se, evenness.scatter);
+  if (drum.in_view < kSeenWell) line.turn.se = std::hypot(line.turn.se, kOneSided * line.turn.value);
   return line;
 }
 
@@ -155,14 +164,14 @@ struct Bearings {
   double roll_deg = 0;
 };
 
-Bearings find_bearings(const FilmScene& scene, const FreeFall& fall, const Estimate& turn, double file_rate,
+Bearings find_bearings(const FilmScene& scene, const FreeFall& fall, const Timeline& line, double file_rate,
                        const Config& known, double told_rate, ChargeMotion& motion) {
   TimeWitnesses witnesses;
   witnesses.told_rate = told_rate;
   witnesses.scale_error = std::max(0.01, scene.place_error);
   witnesses.file_rate = file_rate;
   if (!std::isnan(scene.metres)) witnesses.falling_rate = frames_per_second(fall, kGravity / scene.metres);
-  witnesses.turn_per_frame = {std::abs(turn.value), turn.se};
+  if (line.even) witnesses.turn_per_frame = {std::abs(line.turn.value), line.turn.se};
   if (known.mill.speed > 0 || known.mill.speed_rpm > 0) witnesses.nominal_rpm = speed_rpm(known.mill);
   Bearings bearings;
   bearings.base = judge_time_base(witnesses);
@@ -220,21 +229,25 @@ void describe_mill(const FilmScene& scene, const Timeline& line, const Bearings&
   motion.speed_rpm = {rpm_from_rad_s(sense * line.turn.value * fps.value), rpm_from_rad_s(line.turn.se * fps.value)};
   if (!std::isnan(fps.se))
     motion.speed_rpm.se = std::hypot(motion.speed_rpm.se, motion.speed_rpm.value * fps.se / fps.value);
+  if (scene.drum.in_view < kSeenWell)
+    motion.caveats.push_back(
+        fmt::format("only {:.0f} % of the shell is in the picture: axis, radius and speed are less sure than usual",
+                    100 * scene.drum.in_view));
+  if (!line.even) {
+    motion.caveats.push_back(
+        "what is seen to turn does not turn evenly, as a charge that slides: too little is seen of the drum itself to "
+        "tell its speed well, or missing frames");
+  }
+  // Of two witnesses, one of which is known to be poor.
+  const double nominal = speed_rpm(known.mill), off = std::abs(motion.speed_rpm.value) - nominal;
+  if (nominal > 0 && (!line.even || scene.drum.in_view < kSeenWell)) {
+    motion.speed_rpm.se = std::hypot(motion.speed_rpm.se, off);
+    if (std::abs(off) > kFarOff * nominal) motion.speed_rpm = {};
+  }
   Mill mill = known.mill;
   if (std::isnan(mill.diameter)) mill.diameter = 2 * motion.mill_radius;
   const double critical = critical_speed_rpm(mill);
   motion.speed_fraction = {motion.speed_rpm.value / critical, motion.speed_rpm.se / critical};
-}
-
-// Bins of the ring, upright and counter-clockwise, of which half and more is covered by what stands still.
-std::vector<bool> hidden_bins(const std::vector<double>& share, double roll_deg, bool clockwise) {
-  std::vector<bool> hidden(360, false);
-  if (share.size() != 360) return hidden;
-  for (int i = 0; i < 360; ++i) {
-    const double upright = i + 0.5, seen = (clockwise ? 180 - upright : upright) + roll_deg;
-    hidden[static_cast<std::size_t>(i)] = share[static_cast<std::size_t>(wrap_360(seen))] > 0.5;
-  }
-  return hidden;
 }
 
 FilmFindings findings_of(const FilmScene& scene, const FilmPass& pass, double roll, const ChargeMotion& motion) {
@@ -278,7 +291,8 @@ void gather(const FilmScene& scene, const FilmPass& pass, const Timeline& line, 
   if (line.turn.value != 0) geometry.passage_frames = 2 * kPi / passages / std::abs(line.turn.value);
   if (!std::isnan(scene.metres) && !std::isnan(fps)) geometry.gravity = kGravity;
 
-  const std::vector<bool> hidden = hidden_bins(scene.drum.hidden_share, bearings.roll_deg, clockwise);
+  const std::vector<bool> hidden =
+      hidden_bins(scene.drum.hidden_share, bearings.roll_deg, clockwise, mean_radius / scene.tip_radius);
   const double lifter = std::isnan(scene.drum.lifter_angle) ? 0.0 : scene.drum.lifter_angle;
   ChargeStatistics statistics(geometry);
   std::vector<double> fillings;
@@ -383,7 +397,7 @@ ChargeMotion measure_film(const std::string& path, const FilmOptions& options, c
   // Seen from the side, a tilt that is wrong along one axis leans the other.
   fall.roll_deg.se = std::hypot(fall.roll_deg.se, degrees(scene.drum.obliqueness.value * scene.drum.obliqueness.se));
   const Bearings bearings =
-      find_bearings(scene, fall, line.turn, reader.frames_per_second(), known, options.recorded_fps, motion);
+      find_bearings(scene, fall, line, reader.frames_per_second(), known, options.recorded_fps, motion);
   describe_mill(scene, line, bearings, known, motion);
   FilmFindings findings = findings_of(scene, pass, radians(bearings.roll_deg), motion);
   gather(scene, pass, line, places, bearings, first.mean_radius, motion, findings);
