@@ -119,6 +119,7 @@ class Pictures {
 struct Drum {  // frames that are no repeats and whose angle is known
   std::vector<int> frame;
   std::vector<double> x, angle;  // recorded index, angle
+  std::vector<int> wild;         // frames whose angle stood alone, and was left out
 };
 
 double local_speed(const Drum& drum, std::size_t i) {
@@ -195,6 +196,20 @@ double step_scatter(const Drum& drum, std::size_t k, double speed) {
   return steps.size() < 4 ? 0.0 : robust_deviation(steps);
 }
 
+// Whether the angle goes back near frame k, or one stood alone: no drum does that, angles are misread there, by a
+// frame's turn as well as not.
+bool goes_back_near(const Drum& drum, std::size_t k, double speed, double sigma) {
+  constexpr std::size_t kNear = 3;
+  constexpr double kBack = 0.5;  // frames' turns
+  for (const int frame : drum.wild)
+    if (std::abs(frame - drum.frame[k]) <= static_cast<int>(kNear)) return true;
+  for (std::size_t i = k > kNear ? k - kNear : 1; i < std::min(drum.x.size(), k + kNear + 1); ++i) {
+    const double off = (drum.angle[i] - drum.angle[i - 1]) / speed - (drum.x[i] - drum.x[i - 1]);
+    if (i != k && off < -std::max(kBack, kSure * std::sqrt(2.0) * sigma / speed)) return true;
+  }
+  return false;
+}
+
 // Before frame k of the drum's.
 struct Gap {
   double step = 0, error = 1;  // in frames' turns
@@ -211,6 +226,7 @@ Gap judge_gap(const Drum& drum, std::size_t k, double sigma, double jump, bool d
   if (!(speed > 0)) return gap;
   // Angles that are misread at every other frame are off by a frame's turn now and then.
   const double scatter = step_scatter(drum, k, speed);
+  const bool misread = goes_back_near(drum, k, speed, sigma);
   // The shortest stretch that is sharp enough: the speed is even over a short one.
   for (const std::size_t wide : kWidths) {
     const std::size_t from = k > wide ? k - wide : 0, to = std::min(drum.x.size(), k + wide);
@@ -219,7 +235,7 @@ Gap judge_gap(const Drum& drum, std::size_t k, double sigma, double jump, bool d
     gap.error = fit.error;
     if (gap.error > kSharp && wide != kWidths.back()) continue;
     const double whole = gap.error > kCoarse ? 1.0 : std::round(gap.step);
-    const bool sure = gap.step > kSure * std::max(gap.error, scatter) && fit.better > kLeastBetter;
+    const bool sure = !misread && gap.step > kSure * std::max(gap.error, scatter) && fit.better > kLeastBetter;
     const bool likely = jump >= kOdd && gap.step > kLikely * gap.error && fit.better > 0;
     if (whole >= 1 && std::abs(gap.step - whole) < std::max(0.3, 2.5 * gap.error) && fit.chi2 < kWorstFit &&
         (sure || likely) && !denied) {
@@ -239,8 +255,10 @@ void drop_wild_angles(Drum& drum, double sigma) {
       const double speed = local_speed(drum, k);
       const double across = (drum.angle[k + 1] - drum.angle[k - 1]) / speed - (drum.x[k + 1] - drum.x[k - 1]);
       const double off = (drum.angle[k] - drum.angle[k - 1]) / speed - (drum.x[k] - drum.x[k - 1]);
-      if (std::abs(across) < 0.3 + 4 * sigma / speed && std::abs(off - 0.5 * across) > 0.6 + 6 * sigma / speed)
+      if (std::abs(across) < 0.3 + 4 * sigma / speed && std::abs(off - 0.5 * across) > 0.6 + 6 * sigma / speed) {
+        kept.wild.push_back(drum.frame[k]);
         continue;
+      }
     }
     kept.frame.push_back(drum.frame[k]);
     kept.x.push_back(drum.x[k]);

@@ -207,6 +207,16 @@ TEST(FrameClock, OneWildAngleIsNoGap) {
   EXPECT_TRUE(clock.duplicated.empty() && clock.dropped.empty());
 }
 
+TEST(FrameClock, AnAngleThatSlipsToAndFroIsNoGap) {
+  Film film;
+  film.duplicates = film.drops = 0;
+  std::vector<double> difference, angle;
+  make_film(film, 3, difference, angle);
+  for (std::size_t i = 100; i < angle.size(); ++i)
+    if (i != 101) angle[i] += radians(film.turn_deg);  // one frame's turn on, back, and on again
+  EXPECT_TRUE(clock_of(difference, angle).dropped.empty());
+}
+
 TEST(FrameClock, PictureDifferenceLooksInsideTheDrumAlone) {
   cv::Mat before(720, 1280, CV_8UC1, cv::Scalar(100)), now = before.clone();
   EXPECT_EQ(picture_difference(before, now, 640, 360, 300), 0);
