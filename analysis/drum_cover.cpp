@@ -13,7 +13,6 @@ constexpr double kGlare = 240;       // [grey levels]: brighter is glare
 constexpr double kSharp = 5;         // step of brightness at the outline of a cover [grey levels per pixel]
 constexpr double kSharpShare = 0.6;  // of the outline
 constexpr double kUnlike = 6;        // by which a cover differs from what the drum shows at that radius [grey levels]
-constexpr double kLeak = 0.03;       // of what moves next to it: a still place seems to, as far as compression smears
 constexpr int kLeastPixels = 12;     // of a cover
 constexpr int kDirections = 720;     // round the drum
 constexpr int kAcross = 8;           // places in the ring of the lifters, in one direction
@@ -24,13 +23,12 @@ constexpr double kRingShare = 0.5;   // of the directions in which lifters must 
 cv::Mat hidden_part(const cv::Mat& mean, const cv::Mat& deviation, const DrumPose& pose, double tip, double shell) {
   const MillCamera camera = pose.camera();
   cv::Mat radius(mean.size(), CV_32F);
-  std::vector<float> outside, inside;
+  std::vector<float> outside;
   for (int v = 0; v < mean.rows; ++v)
     for (int u = 0; u < mean.cols; ++u) {
       const double r = mill_place_at(camera, cv::Point2d(u, v), 0).norm();
       radius.at<float>(v, u) = static_cast<float>(std::isnan(r) ? 1e9 : r);
       if (r > 1.3 * shell) outside.push_back(deviation.at<float>(v, u));
-      if (r < shell) inside.push_back(deviation.at<float>(v, u));
     }
   double noise = 1;  // where nothing moves; of the quieter half: other things may move outside of the drum
   if (outside.size() > 200) {
@@ -38,20 +36,11 @@ cv::Mat hidden_part(const cv::Mat& mean, const cv::Mat& deviation, const DrumPos
     std::nth_element(outside.begin(), at, outside.end());
     noise = *at;
   }
-  double leak = 0;
-  if (!inside.empty()) {
-    const auto at = inside.begin() + static_cast<std::ptrdiff_t>(0.75 * static_cast<double>(inside.size() - 1));
-    std::nth_element(inside.begin(), at, inside.end());
-    leak = kLeak * *at;
-  }
-  cv::Mat smooth, still, calm, edge_u, edge_v, edge;
+  cv::Mat smooth, still, edge_u, edge_v, edge;
   cv::GaussianBlur(deviation, smooth, {}, 0.8);
   still = smooth < 1.0 + 1.6 * noise;
-  calm = smooth < 1.0 + 1.6 * std::max(noise, leak);  // still as well, if its outline says so
-  for (cv::Mat* m : {&still, &calm}) {
-    m->setTo(0, radius > shell);
-    cv::morphologyEx(*m, *m, cv::MORPH_CLOSE, cv::Mat::ones(3, 3, CV_8U));
-  }
+  still.setTo(0, radius > shell);
+  cv::morphologyEx(still, still, cv::MORPH_CLOSE, cv::Mat::ones(3, 3, CV_8U));
   cv::Sobel(mean, edge_u, CV_32F, 1, 0, 3, 0.125);
   cv::Sobel(mean, edge_v, CV_32F, 0, 1, 3, 0.125);
   cv::magnitude(edge_u, edge_v, edge);
@@ -103,7 +92,7 @@ cv::Mat hidden_part(const cv::Mat& mean, const cv::Mat& deviation, const DrumPos
 
   cv::Mat near_sharp, labels, stats, centres;
   cv::dilate(sharp, near_sharp, cv::Mat::ones(5, 5, CV_8U));
-  const int parts = cv::connectedComponentsWithStats(calm & ~sharp, labels, stats, centres, 4, CV_32S);
+  const int parts = cv::connectedComponentsWithStats(still & ~sharp, labels, stats, centres, 4, CV_32S);
   for (int part = 1; part < parts; ++part) {
     if (stats.at<int>(part, cv::CC_STAT_AREA) < kLeastPixels) continue;
     const cv::Mat here = labels == part;
@@ -124,7 +113,7 @@ cv::Mat hidden_part(const cv::Mat& mean, const cv::Mat& deviation, const DrumPos
     if (glare || (outlined && unlike > kUnlike)) hidden.setTo(255, here);
   }
   cv::dilate(hidden, hidden, cv::Mat::ones(5, 5, CV_8U));  // the edges that were left out
-  hidden.setTo(0, ~calm & ~sharp);
+  hidden.setTo(0, ~still & ~sharp);
   hidden.setTo(0, radius > shell);
   return hidden;
 }
