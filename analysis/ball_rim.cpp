@@ -12,16 +12,16 @@ namespace tumble::analysis {
 namespace {
 
 constexpr int kRays = 72;
-constexpr double kStep = 0.2;        // along a ray [px]
-constexpr int kHalf = 3;             // steps on either side of an edge that its height is taken over
-constexpr double kFaint = 10;        // height of an edge that says nothing [grey levels]
-constexpr double kClear = 60;        // height beyond which edges are all the same
-constexpr double kOnCircle = 0.25;   // distance from the circle within which an edge lies on it [px]
-constexpr double kSharp = 0.5;       // share of such edges from which outlines count as sharp
-constexpr double kWhole = 0.6;       // share from which the right circle is found for certain
-constexpr double kAside = 1.2;       // of other starts for it [px]
-constexpr std::size_t kFewest = 12;  // balls to learn from
-constexpr std::size_t kEnough = 50;  // their median share is then known to 0.03
+constexpr double kStep = 0.2;         // along a ray [px]
+constexpr int kHalf = 3;              // steps on either side of an edge that its height is taken over
+constexpr double kFaint = 10;         // height of an edge that says nothing [grey levels]
+constexpr double kClear = 60;         // height beyond which edges are all the same
+constexpr double kOnCircle = 0.25;    // distance from the circle within which an edge lies on it [px]
+constexpr double kSharp = 0.5;        // share of such edges from which outlines count as sharp
+constexpr double kWhole = 0.6;        // share from which the right circle is found for certain
+constexpr double kAside = 1.2;        // of other starts for it [px]
+constexpr std::size_t kFewest = 12;   // balls to learn from
+constexpr std::size_t kEnough = 100;  // their median share is then known to 0.02
 
 // Height of the edge along the rays from a centre, by ray and distance.
 class Rays {
@@ -164,11 +164,14 @@ double learn_rim(const std::vector<cv::Mat>& greys, const std::vector<std::vecto
   for (const auto& p : centres) count += p.size();
   if (count < kFewest) return kNotGiven;
   std::vector<std::vector<cv::Point2d>> places(centres.size());
-  const std::size_t stride = 1 + count / kEnough;
-  std::size_t met = 0;
+  const std::size_t taken = std::min(count, kEnough);
+  std::size_t met = 0, kept = 0;
   for (std::size_t g = 0; g < centres.size(); ++g)
-    for (const cv::Point2d& p : centres[g])
-      if (met++ % stride == 0) places[g].push_back(p);
+    for (const cv::Point2d& p : centres[g]) {
+      if (met++ < kept * count / taken) continue;
+      places[g].push_back(p);
+      ++kept;
+    }
   const auto first = places;
   double best = 0, rim = 0;
   for (double r = 0.86 * radius; r < 1.1 * radius; r += 1.6 * kOnCircle) {

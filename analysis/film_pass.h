@@ -22,7 +22,7 @@ struct FilmPass {
   FrameSpool<FilmBall> balls;
   std::vector<DrumAngle> drum;
   std::vector<double> difference, difference_over_two;  // to the frame before, to that before it (frame_clock.h)
-  std::vector<cv::Mat> kept;       // pictures that were asked for, in order
+  std::vector<cv::Mat> kept;                            // pictures that were asked for, in order
 
   std::size_t frames() const { return balls.size(); }
 };
