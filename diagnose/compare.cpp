@@ -15,6 +15,7 @@
 namespace tumble::diagnose {
 namespace {
 
+constexpr double kOneInHundred = 2.326;  // normal deviate that one in a hundred exceeds
 constexpr double kSameMill = 0.02;  // of the diameter, of speed and filling
 
 // Quantities of one kin hardly know more than one of them does.
@@ -110,8 +111,13 @@ void sum_up(Deviation& d) {
   }
   d.chi = std::sqrt(mean);
   // Like chi-squared of f degrees of freedom over f: Wilson and Hilferty (1931).
-  const double f = 2 / variance, cube = 1 - 2 / (9 * f) + 2.326 * std::sqrt(2 / (9 * f));
-  d.chi_limit = std::sqrt(cube * cube * cube);
+  const double f = 2 / variance;
+  const auto share_below = [&](double z) { return std::pow(1 - 2 / (9 * f) + z * std::sqrt(2 / (9 * f)), 1.5); };
+  d.chi_limit = share_below(kOneInHundred);
+  if (d.chi < share_below(-kOneInHundred))
+    d.caveats.push_back(
+        "The number is far below 1: A and B may show the same motion, whose chances they then share, and small "
+        "differences are known better than their errors say.");
 }
 
 std::string percent_apart(double a, double b) { return fmt::format("{:.2g} %", 100 * share_apart(a, b)); }
