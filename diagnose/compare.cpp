@@ -16,7 +16,7 @@ namespace tumble::diagnose {
 namespace {
 
 constexpr double kOneInHundred = 2.326;  // normal deviate that one in a hundred exceeds
-constexpr double kSameMill = 0.02;  // of the diameter, of speed and filling
+constexpr double kSameMill = 0.02;       // of the diameter, of speed and filling
 
 // Quantities of one kin hardly know more than one of them does.
 std::string kin_of(const std::string& name) {
@@ -181,8 +181,8 @@ std::string quantities_in_words(const std::vector<Difference>& differences) {
   for (const Difference* d : named) {
     if (said.size() == 3 || !said.insert(kin_of(d->name)).second) continue;
     text +=
-        fmt::format("{}{} is {} {} ({:.1f} sigma)", text.empty() ? "in B " : ", ", lower_first(words_for(d->name)),
-                    amount(d->difference, d->se, d->unit), d->difference > 0 ? "larger" : "smaller", std::abs(d->z));
+        fmt::format("{}{} {}{} ({:.1f} sigma)", text.empty() ? "B against A: " : ", ", lower_first(words_for(d->name)),
+                    d->difference > 0 ? "+" : "\u2212", amount(d->difference, d->se, d->unit), std::abs(d->z));
   }
   return text;
 }
@@ -195,11 +195,11 @@ void conclude(Deviation& d) {
   const std::string quantities = quantities_in_words(d.differences);
   const bool differ = !quantities.empty() || fields > 0 || d.chi > d.chi_limit;
   d.verdict = differ ? Verdict::kDiffer : Verdict::kAgree;
-  const std::string number =
-      fmt::format("Over all the difference is {:.2f} times its error (equal mills give 1, and less than {:.2f}).",
-                  d.chi, d.chi_limit);
+  const std::string number = fmt::format(
+      "Over all, differences are {:.2f} times what chance makes them (equal mills: 1, and less than {:.2f}).", d.chi,
+      d.chi_limit);
   if (!differ) {
-    d.sentence = "They agree: nothing differs by more than chance makes it. " + number;
+    d.sentence = "They agree. Nothing differs by more than chance makes it. " + number;
     return;
   }
   std::string text = quantities;
@@ -207,11 +207,11 @@ void conclude(Deviation& d) {
     if (f.beyond_chance == 0 || (f.name == "velocity_y" && d.fields[1].beyond_chance >= f.beyond_chance) ||
         (f.name == "velocity_x" && d.fields[2].beyond_chance > f.beyond_chance))
       continue;
-    text += fmt::format("{}{} differs in {} of {} cells, most {}", text.empty() ? "" : "; ",
+    text += fmt::format("{}{} differs in {} of {} cells, most {}", text.empty() ? "The " : "; the ",
                         f.name == "occupancy" ? "occupancy" : "velocity", f.beyond_chance, f.compared, f.where);
   }
-  if (text.empty()) text = "no single quantity, but all of them together by more than chance makes them";
-  d.sentence = "They differ: " + text + ". " + number;
+  if (text.empty()) text = "No single quantity does so beyond chance, but all of them together do";
+  d.sentence = "They differ. " + text + ". " + number;
 }
 
 }  // namespace

@@ -93,10 +93,15 @@ Cut emptiest(const SampledDifference& ring) {
 }
 
 std::vector<PlotRule> edges_of(const Comparison& c, const Cut& cut) {
+  constexpr double kRoom = 40;  // [degrees] that a name takes
   std::vector<PlotRule> rules;
-  for (const auto& [m, side] : {std::pair{c.a.motion, "A"}, {c.b.motion, "B"}})
-    for (const auto& [e, name] : {std::pair{m->toe_deg, "toe "}, {m->shoulder_deg, "shoulder "}})
-      if (std::isfinite(e.value)) rules.push_back({cut.turned(e.value), std::string(name) + side});
+  for (const auto& [edge, name] :
+       {std::pair{&ChargeMotion::toe_deg, "toe "}, {&ChargeMotion::shoulder_deg, "shoulder "}}) {
+    const double a = cut.turned((c.a.motion->*edge).value), b = cut.turned((c.b.motion->*edge).value);
+    const bool close = std::abs(a - b) < kRoom;
+    if (std::isfinite(a)) rules.push_back({a, name + std::string(close ? "A, B" : "A")});
+    if (std::isfinite(b)) rules.push_back({b, close ? "" : name + std::string("B")});
+  }
   return rules;
 }
 
@@ -295,6 +300,12 @@ std::string title_of(const Deviation& d) {
   return "It cannot be said whether they agree";
 }
 
+// The title has said whether they agree.
+std::string after_verdict(const std::string& sentence) {
+  const std::size_t end = sentence.find(". ");
+  return end == std::string::npos ? sentence : sentence.substr(end + 2);
+}
+
 std::string sides_html(const Comparison& c) {
   const auto side = [](const char* name, const char* style, const ChargeMotion& m) {
     std::string what = fmt::format("{}, {} frames", name_of_kind(m.source), m.frames);
@@ -445,7 +456,7 @@ std::string comparison_page(const Comparison& c) {
                      {"film_slow", c.film_slow}};
   return filled(compare_html,
                 {{"title", escaped(title_of(d) + ": " + file_name(*c.a.motion) + " and " + file_name(*c.b.motion))},
-                 {"lead", escaped(d.sentence)},
+                 {"lead", escaped(after_verdict(d.sentence))},
                  {"sides", sides_html(c)},
                  {"caveats", caveats_html(caveats_of(c))},
                  {"keys", keys_html(d)},
