@@ -16,7 +16,8 @@ struct Difference {       // one quantity in two sources
   double chance = kNotGiven;      // that two equal mills give such a |z| or a larger one
   bool significant = false;       // beyond chance, all that was compared beside it allowed for
   bool is_condition = false;      // what the mill was set to (speed, filling), not what the charge makes of it
-  std::string note = {};          // why there is no difference; may be empty
+  bool counts = true;             // towards the number and the verdict
+  std::string note = {};          // why there is no difference, or why it does not count; may be empty
 };
 
 // A quantity along a line or over the grid of cells, place by place.

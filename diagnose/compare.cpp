@@ -29,6 +29,10 @@ bool is_condition(const std::string& name) {
   return name == "speed_rpm" || name == "speed_fraction" || name == "filling";
 }
 
+// What is seen of these hangs on how far balls go from picture to picture: a run knows velocities at an instant, a film
+// means over pictures, which impacts and chance collisions drop out of.
+bool hangs_on_rate(const std::string& name) { return name == "granular_temperature_m2_s2" || name == "flight_share"; }
+
 bool has_length(const MotionQuantity& q) { return std::strpbrk(q.unit, "mNs") != nullptr && !q.is_direction; }
 
 double share_apart(double a, double b) { return std::abs(b - a) / (0.5 * (std::abs(a) + std::abs(b))); }
@@ -41,6 +45,9 @@ std::vector<Difference> compare_quantities(const ChargeMotion& a, const ChargeMo
     const bool no_a = std::isnan(d.a.value), no_b = std::isnan(d.b.value);
     if (no_a && no_b) continue;
     d.is_condition = is_condition(d.name);
+    const bool bound =
+        hangs_on_rate(d.name) && (a.source == MotionSource::kRunFile) != (b.source == MotionSource::kRunFile);
+    d.counts = !d.is_condition && !bound;
     double chance = kNotGiven;
     if (no_a || no_b) {
       d.note = no_a ? "only B has it" : "only A has it";
@@ -52,7 +59,8 @@ std::vector<Difference> compare_quantities(const ChargeMotion& a, const ChargeMo
       if (d.se > 0) {
         d.z = d.difference / d.se;
         d.chance = two_sided_chance(normal_z(d.z, welch_freedom(d.a.se, d.b.se)));
-        if (!d.is_condition) chance = d.chance;
+        if (d.counts) chance = d.chance;
+        if (bound) d.note = "hangs on the pictures' rate: does not count";
       } else if (!d.is_condition) {
         d.note = "no standard error";
       }
@@ -70,7 +78,7 @@ Agreement agreement_of(const std::vector<Difference>& differences) {
   std::set<std::string> kins;
   double squares = 0;
   for (const Difference& d : differences) {
-    if (d.is_condition || std::isnan(d.z)) continue;
+    if (!d.counts || std::isnan(d.z)) continue;
     squares += std::pow(normal_z(d.z, welch_freedom(d.a.se, d.b.se)), 2);
     ++of.compared;
     kins.insert(kin_of(d.name));
@@ -121,6 +129,30 @@ void sum_up(Deviation& d) {
 }
 
 std::string percent_apart(double a, double b) { return fmt::format("{:.2g} %", 100 * share_apart(a, b)); }
+
+// A film that is too slow for its balls: how far the faster ones go between pictures, in ball diameters.
+double diameters_per_picture(const ChargeMotion& m) {
+  if (m.source == MotionSource::kRunFile || m.tracks.empty()) return kNotGiven;
+  std::vector<double> speeds, radii;
+  for (std::size_t k = 0; k < m.field.vx.size(); ++k)
+    if (m.field.occupancy[k] > 0.02 && !std::isnan(m.field.vx[k]))
+      speeds.push_back(std::hypot(m.field.vx[k], m.field.vy[k]));
+  for (const TrackPoint& p : m.tracks.read(0, std::min<std::size_t>(m.tracks.size(), 2000)))
+    if (!std::isnan(p.radius)) radii.push_back(p.radius);
+  if (speeds.empty() || radii.empty()) return kNotGiven;
+  std::sort(speeds.begin(), speeds.end());
+  std::sort(radii.begin(), radii.end());
+  return speeds[speeds.size() * 9 / 10] / m.frames_per_second / (2 * radii[radii.size() / 2]);
+}
+
+void note_slow_film(Deviation& d, const ChargeMotion& m, const char* name) {
+  if (const double far = diameters_per_picture(m); far > 0.5)
+    d.caveats.push_back(fmt::format(
+        "{}: the faster balls go {:.1f} of their diameter from picture to picture, too far to be followed well: "
+        "velocities "
+        "and what comes of them (circulation, flights) lean towards slow balls. More pictures a second are needed.",
+        name, far));
+}
 
 void note_conditions(Deviation& d, const ChargeMotion& a, const ChargeMotion& b, bool same_size) {
   const auto add = [&](const std::string& text) { d.caveats.push_back(text); };
@@ -227,6 +259,8 @@ Deviation compare(const ChargeMotion& a, const ChargeMotion& b) {
   if (same_size)
     for (SampledDifference& spectrum : compare_spectra(a, b)) d.lines.push_back(std::move(spectrum));
   note_conditions(d, a, b, same_size);
+  note_slow_film(d, a, "A");
+  note_slow_film(d, b, "B");
   sum_up(d);
   if (!std::isnan(d.chi))
     conclude(d);

@@ -99,7 +99,7 @@ std::vector<PlotRule> edges_of(const Comparison& c, const Cut& cut) {
        {std::pair{&ChargeMotion::toe_deg, "toe "}, {&ChargeMotion::shoulder_deg, "shoulder "}}) {
     const double a = cut.turned((c.a.motion->*edge).value), b = cut.turned((c.b.motion->*edge).value);
     const bool close = std::abs(a - b) < kRoom;
-    if (std::isfinite(a)) rules.push_back({a, name + std::string(close ? "A, B" : "A")});
+    if (std::isfinite(a)) rules.push_back({a, name + std::string(close ? "" : "A")});
     if (std::isfinite(b)) rules.push_back({b, close ? "" : name + std::string("B")});
   }
   return rules;

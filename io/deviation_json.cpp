@@ -31,7 +31,8 @@ Json quantities_json(const Deviation& d) {
                 {"z", rough(one.z)},
                 {"chance", rough(one.chance)},
                 {"beyond_chance", one.significant},
-                {"condition", one.is_condition}};
+                {"condition", one.is_condition},
+                {"counts", one.counts}};
     if (!one.note.empty()) row["note"] = one.note;
     all.push_back(row);
   }

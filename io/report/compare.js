@@ -58,7 +58,7 @@
     const bar = svg("g", { class: "scale", transform: "translate(118 60)" });
     [[-1, "less"], [-0.5, "less"], [0, "less"], [0.5, "more"], [1, "more"]].forEach(([v, of], i) => {
       bar.append(svg("rect", { x: 0, y: 34 - 10 * i - 10, width: 8, height: 10, class: of, "fill-opacity": (0.9 * Math.abs(v)).toFixed(2) }));
-      if (i % 2 == 0) bar.append(svg("text", { x: 11, y: 34 - 10 * i - 2.5 }, minus(v == 0 ? "0" : (v * top).toPrecision(2)) + (in_errors && v ? " se" : "")));
+      if (i % 2 == 0) bar.append(svg("text", { x: 11, y: 34 - 10 * i - 2.5 }, minus(v == 0 ? "0" : String(Number((v * top).toPrecision(2)))) + (in_errors && v ? " se" : "")));
     });
     map.append(bar, cursor);
     applyLayers();
