@@ -62,7 +62,9 @@ class ScratchFolder {
 // A folder that this command made goes again if the work fails.
 class OutputFolder {
  public:
-  explicit OutputFolder(const fs::path& path) : path_(path), was_there_(fs::exists(path)) {
+  explicit OutputFolder(const fs::path& path) : path_(path.has_filename() ? path : path.parent_path()) {
+    std::error_code unknown;
+    was_there_ = fs::exists(path_, unknown) || unknown;
     io::make_output_folder(path);
   }
   ~OutputFolder() {
@@ -74,7 +76,7 @@ class OutputFolder {
 
  private:
   fs::path path_;
-  bool was_there_;
+  bool was_there_ = true;
 };
 
 struct Source {

@@ -408,7 +408,8 @@ std::string video(const ComparedFilm& film) {
 std::string films_html(const Comparison& c) {
   const bool a = !c.a.film.file.empty(), b = !c.b.film.file.empty();
   if (!a && !b) return "";
-  std::string out = "<section id=\"films\" class=\"films\">\n<h2>Side by side</h2>\n<div class=\"pair\">\n";
+  std::string out = fmt::format("<section id=\"films\" class=\"films\">\n<h2>{}</h2>\n<div class=\"pair\">\n",
+                                a && b ? "Side by side" : "The charge in motion");
   for (const auto& [film, name, style] : {std::tuple{&c.a.film, "A", "truth"}, {&c.b.film, "B", "found"}})
     if (!film->file.empty())
       out += fmt::format("<figure class=\"{}\">{}<figcaption><b>{}.</b> {}</figcaption></figure>\n", style,

@@ -40,18 +40,23 @@
     const sizes = shown.filter((v, i) => v != null && f.z[i] != null).map(Math.abs).sort((a, b) => a - b);
     const top = in_errors ? 6 : sizes[Math.floor(sizes.length * 0.99)] || 1;
     map.replaceChildren(svg("circle", { class: "inside", r: R }));
-    const cell = 2 / n, low = svg("g", { class: "layer-shade" }), named = svg("g", { class: "layer-named" });
+    const cell = 2 / n, low = svg("g", { class: "layer-shade" });
+    let rims = "";  // of what is beyond chance: where a cell that is meets one that is not
+    const is_named = (i, j) => i >= 0 && j >= 0 && i < n && j < n && f.named[j * n + i] == 1;
     for (let k = 0; k < n * n; ++k) {
       if (shown[k] == null || f.z[k] == null) continue;
       const x = (k % n) * cell - 1, y = Math.floor(k / n) * cell - 1;
       const at = { x: (x * R).toFixed(2), y: (-(y + cell) * R).toFixed(2), width: (cell * R).toFixed(2), height: (cell * R).toFixed(2) };
       const much = Math.min(1, Math.abs(shown[k]) / top);
       if (much > 0.03) low.append(svg("rect", { ...at, class: shown[k] > 0 ? "more" : "less", "fill-opacity": (0.9 * much).toFixed(2) }));
-      if (f.named[k]) named.append(svg("rect", { ...at, class: "named" }));
+      const i = k % n, j = Math.floor(k / n);
+      if (!is_named(i, j)) continue;
+      for (const [di, dj, from, to] of [[-1, 0, [0, 0], [0, 1]], [1, 0, [1, 0], [1, 1]], [0, -1, [0, 0], [1, 0]], [0, 1, [0, 1], [1, 1]]])
+        if (!is_named(i + di, j + dj)) rims += polyline([from, to].map(p => [x + p[0] * cell, y + p[1] * cell]));
     }
     map.append(low, svg("circle", { class: "rim", r: R }));
     if (data.tip < 0.999) map.append(svg("circle", { class: "tips", r: (R * data.tip).toFixed(2) }));
-    map.append(named);
+    map.append(svg("path", { class: "named layer-named", d: rims }));
     dial(map);
     for (const [k, side] of data.sides.entries())
       for (const path of side.paths) map.append(svg("path", { class: `path layer-path ${k ? "found" : "truth"}`, d: polyline(path.points) }));
