@@ -7,6 +7,8 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <tuple>
+#include <vector>
 
 #include "cli/options.h"
 #include "cli/side_by_side.h"
@@ -15,8 +17,10 @@
 #include "core/error.h"
 #include "core/mill_shape.h"
 #include "core/parallel_for.h"
+#include "core/units.h"
 #include "core/version.h"
 #include "diagnose/compare.h"
+#include "diagnose/impacts.h"
 #include "diagnose/typical_paths.h"
 #include "io/comparison_file.h"
 #include "io/config_file.h"
@@ -34,6 +38,7 @@ const std::map<std::string, Rotation> kRotations = {{"auto", Rotation::kUnknown}
 struct Options : CommonOptions {
   fs::path a, b, output, mill;
   std::string rotation = "auto";
+  std::vector<int> balls_a, balls_b;
   bool no_films = false;
   analysis::TracksOptions film;
 };
@@ -126,6 +131,11 @@ Source read(const fs::path& input, const analysis::TracksOptions& film, const Co
   return s;
 }
 
+double averaged_seconds(const io::RunReader& run) {
+  const Config& c = run.setup().config;
+  return c.run.revolutions * 2 * kPi / std::abs(run.setup().mill_speed);
+}
+
 void compare(Options o) {
   limit_threads(o.threads);
   o.film.rotation = parse_name(o.rotation, "--rotation", kRotations);
@@ -144,6 +154,10 @@ void compare(Options o) {
 
   const Source a = read(o.a, o.film, o), b = read(o.b, o.film, o);
   Deviation deviation = diagnose::compare(a.motion, b.motion);
+  if (a.run && b.run)
+    for (SampledDifference& impacts : diagnose::compare_impacts(a.run->result().spectrum, averaged_seconds(*a.run),
+                                                                b.run->result().spectrum, averaged_seconds(*b.run)))
+      deviation.lines.push_back(std::move(impacts));
   std::error_code error;
   if (fs::equivalent(o.a, o.b, error))
     deviation.caveats.insert(deviation.caveats.begin(), "A and B are the same file.");
@@ -151,10 +165,13 @@ void compare(Options o) {
   io::Comparison comparison;
   comparison.deviation = &deviation;
   comparison.version = kVersion;
-  for (const auto& [side, source] : {std::pair{&comparison.a, &a}, {&comparison.b, &b}}) {
+  for (const auto& [side, source, balls] :
+       {std::tuple{&comparison.a, &a, &o.balls_a}, {&comparison.b, &b, &o.balls_b}}) {
     side->motion = &source->motion;
     side->shape = source->shape;
-    if (source->motion.mill_radius > 0) side->paths = diagnose::typical_paths(source->motion);
+    if (!(source->motion.mill_radius > 0)) continue;
+    side->paths = diagnose::typical_paths(source->motion);
+    for (BallPath& path : diagnose::paths_of(source->motion, *balls)) side->paths.push_back(std::move(path));
   }
   std::optional<ScratchFolder> scratch;
   if (!o.no_films && (a.shown().any() || b.shown().any())) {
@@ -188,6 +205,9 @@ void add_compare(CLI::App& app) {
   verb->add_option("--recorded-fps", o->film.recorded_fps, "The camera's rate where the film's is another, 1/s");
   verb->add_option("--rotation", o->rotation, "How the mill turns in a film: auto, clockwise, counter_clockwise")
       ->capture_default_str();
+  verb->add_option("--balls-a", o->balls_a, "Numbers of balls of A whose paths are wanted too, such as 3,17")
+      ->delimiter(',');
+  verb->add_option("--balls-b", o->balls_b, "The same of B")->delimiter(',');
   verb->add_flag("--no-films", o->no_films, "Leave the films out of the report");
   add_common(*verb, *o);
   verb->footer("Example: tumble compare film.mp4 run.h5 --mill mill.toml -o comparison");

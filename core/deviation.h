@@ -42,9 +42,9 @@ struct Agreement {  // of one kind of numbers
   double independent = 0;          // so many numbers would scatter as much, by experience with equal mills
 };
 
-struct BallPath {  // of one ball for one turn about the centre of circulation
+struct BallPath {  // of one ball, mostly for one turn about the centre of circulation
   int ball = 0;
-  double share = kNotGiven;                       // of all such turns, those that stay nearer to the centre
+  double share = kNotGiven;  // of all such turns, those that stay nearer to the centre; NaN: asked for by number
   std::vector<double> time = {}, x = {}, y = {};  // from its start [s], [m]
 };
 

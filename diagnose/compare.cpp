@@ -146,7 +146,7 @@ double diameters_per_picture(const ChargeMotion& m) {
 }
 
 void note_slow_film(Deviation& d, const ChargeMotion& m, const char* name) {
-  if (const double far = diameters_per_picture(m); far > 0.5)
+  if (const double far = diameters_per_picture(m); far > 1)
     d.caveats.push_back(fmt::format(
         "{}: the faster balls go {:.1f} of their diameter from picture to picture, too far to be followed well: "
         "velocities "

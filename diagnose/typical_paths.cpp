@@ -4,7 +4,11 @@
 #include <cmath>
 #include <map>
 
+#include <limits>
+#include <string>
+
 #include "core/angle.h"
+#include "core/error.h"
 
 namespace tumble::diagnose {
 namespace {
@@ -44,7 +48,45 @@ void add_turns(std::vector<Turn>& turns, int ball, const std::vector<Sighting>& 
   }
 }
 
+BallPath part(int ball, double share, const std::vector<Sighting>& path, std::size_t from, std::size_t to) {
+  BallPath out{.ball = ball, .share = share};
+  for (std::size_t i = from; i <= to; ++i) {
+    out.time.push_back(path[i].time - path[from].time);
+    out.x.push_back(path[i].x);
+    out.y.push_back(path[i].y);
+  }
+  return out;
+}
+
 }  // namespace
+
+std::vector<BallPath> paths_of(const ChargeMotion& m, std::span<const int> balls, double seconds) {
+  std::map<int, std::vector<Sighting>> seen;
+  for (const int ball : balls) seen[ball];
+  int first = std::numeric_limits<int>::max(), last = -1;
+  for (const TrackPoint& p : m.tracks) {
+    first = std::min(first, p.id);
+    last = std::max(last, p.id);
+    if (const auto at = seen.find(p.id); at != seen.end()) at->second.push_back({p.frame, p.time, p.x, p.y});
+  }
+  std::vector<BallPath> paths;
+  for (const int ball : balls) {
+    const std::vector<Sighting>& path = seen[ball];
+    if (path.empty())
+      throw InputError(m.origin, "has no ball " + std::to_string(ball) +
+                                     (last < 0 ? "; no ball was followed in it"
+                                               : "; its balls are numbered from " + std::to_string(first) + " to " +
+                                                     std::to_string(last)));
+    std::size_t best_from = 0, best_to = 0, from = 0;
+    for (std::size_t i = 0; i < path.size(); ++i) {
+      if (i > 0 && path[i].frame != path[i - 1].frame + 1) from = i;
+      if (path[i].time - path[from].time > path[best_to].time - path[best_from].time) best_from = from, best_to = i;
+      if (path[best_to].time - path[best_from].time >= seconds) break;
+    }
+    paths.push_back(part(ball, kNotGiven, path, best_from, best_to));
+  }
+  return paths;
+}
 
 std::vector<BallPath> typical_paths(const ChargeMotion& m, double seconds) {
   const double cx = m.centre_of_circulation_x.value, cy = m.centre_of_circulation_y.value;
@@ -65,14 +107,7 @@ std::vector<BallPath> typical_paths(const ChargeMotion& m, double seconds) {
   if (turns.size() < std::size(kShares)) return paths;
   for (const double share : kShares) {
     const Turn& turn = turns[static_cast<std::size_t>(share * static_cast<double>(turns.size() - 1))];
-    const std::vector<Sighting>& path = balls[turn.ball];
-    BallPath out{.ball = turn.ball, .share = share};
-    for (std::size_t i = turn.from; i <= turn.to; ++i) {
-      out.time.push_back(path[i].time - path[turn.from].time);
-      out.x.push_back(path[i].x);
-      out.y.push_back(path[i].y);
-    }
-    paths.push_back(std::move(out));
+    paths.push_back(part(turn.ball, share, balls[turn.ball], turn.from, turn.to));
   }
   return paths;
 }

@@ -49,6 +49,9 @@ constexpr Words kLines[] = {
      "Geometric mean over stretches of the run, with its error. z is that of the ratio."},
     {"head_spectrum", "Head of the charge, power spectrum", "m² s",
      "Likewise. In films its fast end is the noise of single pictures."},
+    {"impacts_ball_ball", "Impacts, ball on ball", "impacts per second and bin",
+     "By the energy lost in an impact. Errors are those of counts, with an allowance for bursts."},
+    {"impacts_ball_wall", "Impacts, ball on wall", "impacts per second and bin", "Likewise, on shell and lifters."},
 };
 
 const Words* words_of(const std::string& name) {
@@ -58,6 +61,7 @@ const Words* words_of(const std::string& name) {
 }
 
 bool is_spectrum(const SampledDifference& d) { return d.name.ends_with("_spectrum"); }
+bool is_impacts(const SampledDifference& d) { return d.name.starts_with("impacts_"); }
 
 const char* name_of_kind(MotionSource source) {
   switch (source) {
@@ -109,7 +113,7 @@ std::vector<PlotRule> edges_of(const Comparison& c, const Cut& cut) {
 std::vector<Plot> plots_of(const SampledDifference& d, const Comparison& c) {
   const Words* words = words_of(d.name);
   if (words == nullptr) return {};
-  const bool ring = d.name == "ring_occupancy", spectrum = is_spectrum(d);
+  const bool ring = d.name == "ring_occupancy", spectrum = is_spectrum(d) || is_impacts(d);
   std::vector<double> x = d.x;
   Cut cut;
   if (ring) {
@@ -221,19 +225,21 @@ std::vector<Plot> distributions(const Comparison& c) {
 }
 
 std::vector<PageSection> plot_sections(const Comparison& c) {
-  PageSection profile{.heading = "Profiles, and how they differ"}, spectra{.heading = "Rhythm"};
+  PageSection profile{.heading = "Profiles, and how they differ"}, spectra{.heading = "Rhythm"},
+      impacts{.heading = "Impacts"};
   profile.paragraphs = {
       "Click a name below a plot to hide or show its line; drag to zoom in, double-click to zoom out."};
   spectra.paragraphs = {
       "Power spectra show at which rates the charge beats, not where it lies. The scatter of their bands is a little "
       "larger than the errors say, so they do not count in the number."};
   for (const SampledDifference& d : c.deviation->lines)
-    for (Plot& plot : plots_of(d, c)) (is_spectrum(d) ? spectra : profile).plots.push_back(std::move(plot));
+    for (Plot& plot : plots_of(d, c))
+      (is_spectrum(d) ? spectra : is_impacts(d) ? impacts : profile).plots.push_back(std::move(plot));
   PageSection frames{.heading = "Frame by frame, as a crowd"};
   frames.paragraphs = {"How often each value comes. No frame is compared with a frame."};
   frames.plots = distributions(c);
   std::vector<PageSection> all;
-  for (PageSection* section : {&profile, &frames, &spectra})
+  for (PageSection* section : {&profile, &frames, &spectra, &impacts})
     if (!section->plots.empty()) all.push_back(std::move(*section));
   return all;
 }

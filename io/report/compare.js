@@ -129,11 +129,14 @@
     });
   };
   data.sides.forEach((side, k) => side.paths.forEach((path, i) => choosers[k].append(
-    new Option(`${Math.round(path.share * 100)} % of turns stay inside (ball ${path.ball}, ${path.time.at(-1).toFixed(2)} s)`, i))));
+    new Option((path.share == null ? `ball ${path.ball}` : `${Math.round(path.share * 100)} % of turns stay inside (ball ${path.ball}`) +
+      `${path.share == null ? " (" : ", "}${(path.time.at(-1) ?? 0).toFixed(2)} s)`, i))));
   choosers.forEach((chooser, k) => {
-    chooser.selectedIndex = Math.floor(chooser.length / 2);
+    chooser.selectedIndex = Math.floor(data.sides[k].paths.filter(path => path.share != null).length / 2);
     chooser.addEventListener("change", () => {
-      if (get("path-together").checked && choosers[1 - k].length) choosers[1 - k].selectedIndex = chooser.selectedIndex;
+      const rank = data.sides[k].paths[chooser.value].share;
+      if (get("path-together").checked && rank != null)
+        choosers[1 - k].selectedIndex = Math.max(0, data.sides[1 - k].paths.findIndex(path => path.share == rank));
       drawPaths();
     });
   });

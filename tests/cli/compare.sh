@@ -67,6 +67,7 @@ refused 'film.mp4: cannot be read as a film' compare film.mp4 a.h5 -o none
 refused 'does not exist; make it first' compare a.h5 b.h5 -o no/such/place
 refused 'is a file; give a folder' compare a.h5 b.h5 -o a.h5
 refused 'nothing.toml' compare a.h5 b.h5 -o none --mill nothing.toml
+refused 'no ball 999; its balls are numbered from 0 to 111' compare a.h5 b.h5 -o none --balls-b 999 --no-films
 refused 'recorded-fps' compare a.h5 b.h5 -o none --recorded-fps -3
 [ ! -e none ] || fail "a refused comparison left its folder"
 

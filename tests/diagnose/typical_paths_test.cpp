@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "core/error.h"
 #include "core/units.h"
 
 namespace tumble::diagnose {
@@ -35,6 +36,16 @@ TEST(TypicalPaths, AreWholeTurnsInOrderOfTheirReach) {
   for (const BallPath& p : paths) EXPECT_NEAR(p.time.back(), 1, 0.011);
   EXPECT_EQ(paths[2].ball, 4) << "half of all turns stay inside of the middle ball's";
   for (std::size_t i = 1; i < paths.size(); ++i) EXPECT_GT(paths[i].ball, paths[i - 1].ball);
+}
+
+TEST(TypicalPaths, BallsByNumberAreFollowedWithoutGapsAndUnknownOnesRefused) {
+  const std::vector<BallPath> whole = paths_of(circling(false), std::vector{7, 2}, 1);
+  ASSERT_EQ(whole.size(), 2u);
+  EXPECT_EQ(whole[0].ball, 7);
+  EXPECT_NEAR(whole[0].time.back(), 1, 0.011);
+  EXPECT_NEAR(std::hypot(whole[1].x[9] - 0.05, whole[1].y[9] + 0.05), 0.03, 1e-12);
+  EXPECT_NEAR(paths_of(circling(true), std::vector{7}, 1)[0].time.back(), 0.48, 1e-9) << "from gap to gap";
+  EXPECT_THROW(paths_of(circling(false), std::vector{9}, 1), InputError);
 }
 
 TEST(TypicalPaths, NoTurnIsPiecedTogetherAcrossAGap) { EXPECT_TRUE(typical_paths(circling(true)).empty()); }
