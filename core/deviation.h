@@ -31,6 +31,7 @@ struct SampledDifference {
   std::vector<double> difference = {}, se = {};  // b - a
   std::vector<double> z = {};                    // NaN where not compared
   std::vector<char> significant = {};            // beyond chance, all places of this quantity allowed for
+  double mean_square = kNotGiven;                // of z, in units of a normal distribution's
   int compared = 0, beyond_chance = 0;           // places
   std::string where = {};                        // most of what is beyond chance, in words; empty where nothing is
 };

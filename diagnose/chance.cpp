@@ -5,9 +5,12 @@
 
 namespace tumble::diagnose {
 
-double welch_freedom(double se_a, double se_b) {
+double batch_freedom(int frames) { return std::clamp(frames - 1.0, 1.0, kBatchFreedom); }
+
+double welch_freedom(double se_a, double se_b, const Freedoms& freedoms) {
   const double a = se_a * se_a, b = se_b * se_b;
-  return a + b > 0 ? kBatchFreedom * (a + b) * (a + b) / (a * a + b * b) : kBatchFreedom;
+  const double least = std::min(freedoms.a, freedoms.b);
+  return a + b > 0 ? (a + b) * (a + b) / (a * a / freedoms.a + b * b / freedoms.b) : least;
 }
 
 double normal_z(double t, double freedom) {

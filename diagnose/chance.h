@@ -5,11 +5,16 @@
 // How far differences go by chance alone, and how often when there are many of them.
 namespace tumble::diagnose {
 
-// Errors of fields are from 16 batches of the run: what chance does with them is Student's t of so many degrees.
+// Errors of fields are from 16 batches of the frames, or from as many as there are frames: what chance does with them
+// is Student's t of one degree fewer.
 inline constexpr double kBatchFreedom = 15;
+double batch_freedom(int frames);
 
-// Degrees of freedom of a difference whose two errors have `kBatchFreedom` each (Welch 1947).
-double welch_freedom(double se_a, double se_b);
+// Degrees of freedom of the errors of two sources, and of a difference between them (Welch 1947).
+struct Freedoms {
+  double a = kBatchFreedom, b = kBatchFreedom;
+};
+double welch_freedom(double se_a, double se_b, const Freedoms& freedoms);
 
 // The z of a normal distribution that is as rare as t (Wallace 1959): 0.02 wrong at most for 3 degrees and more.
 double normal_z(double t, double freedom);

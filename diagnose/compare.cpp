@@ -38,6 +38,7 @@ bool has_length(const MotionQuantity& q) { return std::strpbrk(q.unit, "mNs") !=
 double share_apart(double a, double b) { return std::abs(b - a) / (0.5 * (std::abs(a) + std::abs(b))); }
 
 std::vector<Difference> compare_quantities(const ChargeMotion& a, const ChargeMotion& b, bool lengths) {
+  const Freedoms freedoms{batch_freedom(a.frames), batch_freedom(b.frames)};
   std::vector<Difference> all;
   std::vector<double> chances;
   for (const MotionQuantity& q : kMotionQuantities) {
@@ -58,7 +59,7 @@ std::vector<Difference> compare_quantities(const ChargeMotion& a, const ChargeMo
       d.se = std::hypot(d.a.se, d.b.se);
       if (d.se > 0) {
         d.z = d.difference / d.se;
-        d.chance = two_sided_chance(normal_z(d.z, welch_freedom(d.a.se, d.b.se)));
+        d.chance = two_sided_chance(normal_z(d.z, welch_freedom(d.a.se, d.b.se, freedoms)));
         if (d.counts) chance = d.chance;
         if (bound) d.note = "hangs on the pictures' rate: does not count";
       } else if (!d.is_condition) {
@@ -73,13 +74,13 @@ std::vector<Difference> compare_quantities(const ChargeMotion& a, const ChargeMo
   return all;
 }
 
-Agreement agreement_of(const std::vector<Difference>& differences) {
+Agreement agreement_of(const std::vector<Difference>& differences, const Freedoms& freedoms) {
   Agreement of{.name = "quantities"};
   std::set<std::string> kins;
   double squares = 0;
   for (const Difference& d : differences) {
     if (!d.counts || std::isnan(d.z)) continue;
-    squares += std::pow(normal_z(d.z, welch_freedom(d.a.se, d.b.se)), 2);
+    squares += std::pow(normal_z(d.z, welch_freedom(d.a.se, d.b.se, freedoms)), 2);
     ++of.compared;
     kins.insert(kin_of(d.name));
   }
@@ -95,16 +96,15 @@ Agreement agreement_of(const std::string& name, double independent, const std::v
   for (const SampledDifference& d : among) {
     if (std::none_of(names.begin(), names.end(), [&](const char* one) { return d.name == one; })) continue;
     of.compared += d.compared;
-    for (std::size_t i = 0; i < d.z.size(); ++i)
-      if (!std::isnan(d.z[i])) squares += std::pow(normal_z(d.z[i], welch_freedom(d.a_se[i], d.b_se[i])), 2);
+    if (d.compared > 0) squares += d.mean_square * d.compared;
   }
   of.independent = std::min(of.independent, static_cast<double>(of.compared));
   if (of.compared > 0) of.mean_square = squares / of.compared;
   return of;
 }
 
-void sum_up(Deviation& d) {
-  d.agreements.push_back(agreement_of(d.differences));
+void sum_up(Deviation& d, const Freedoms& freedoms) {
+  d.agreements.push_back(agreement_of(d.differences, freedoms));
   // A thousand cells scatter like ten numbers, for the charge heaves as a whole; and so do the other kinds. How many,
   // is taken from pairs of runs that differ in their seed alone (docs/compare.md).
   d.agreements.push_back(agreement_of("occupancy", 6, d.fields, {"occupancy"}));
@@ -261,7 +261,7 @@ Deviation compare(const ChargeMotion& a, const ChargeMotion& b) {
   note_conditions(d, a, b, same_size);
   note_slow_film(d, a, "A");
   note_slow_film(d, b, "B");
-  sum_up(d);
+  sum_up(d, {batch_freedom(a.frames), batch_freedom(b.frames)});
   if (!std::isnan(d.chi))
     conclude(d);
   else

@@ -24,7 +24,7 @@ SampledDifference compare_rates(const char* name, const std::vector<double>& edg
     d.a_se.push_back(enough ? std::sqrt(kBursts * a[i] / seconds_a) : kNotGiven);
     d.b_se.push_back(enough ? std::sqrt(kBursts * b[i] / seconds_b) : kNotGiven);
   }
-  judge(d, true);
+  judge(d, {}, true);
   return d;
 }
 

@@ -5,7 +5,6 @@
 #include <map>
 
 #include "core/angle.h"
-#include "diagnose/chance.h"
 
 namespace tumble::diagnose {
 namespace {
@@ -151,11 +150,12 @@ bool any(const std::vector<double>& values) {
 
 }  // namespace
 
-void judge(SampledDifference& d, bool ratio) {
+void judge(SampledDifference& d, const Freedoms& freedoms, bool ratio) {
   const std::size_t n = d.a.size();
   d.difference.assign(n, kNotGiven);
   d.se = d.z = d.difference;
   std::vector<double> chances(n, kNotGiven);
+  double squares = 0;
   for (std::size_t i = 0; i < n; ++i) {
     d.difference[i] = d.b[i] - d.a[i];
     d.se[i] = std::hypot(d.a_se[i], d.b_se[i]);
@@ -168,10 +168,13 @@ void judge(SampledDifference& d, bool ratio) {
     const double se = std::hypot(se_a, se_b);
     if (!(se > 0) || !std::isfinite(apart)) continue;
     d.z[i] = apart / se;
-    chances[i] = two_sided_chance(normal_z(d.z[i], welch_freedom(se_a, se_b)));
+    const double normal = normal_z(d.z[i], welch_freedom(se_a, se_b, freedoms));
+    chances[i] = two_sided_chance(normal);
+    squares += normal * normal;
   }
   d.significant = beyond_chance(chances, kFalseAlarms);
   d.compared = static_cast<int>(std::count_if(chances.begin(), chances.end(), [](double p) { return !std::isnan(p); }));
+  if (d.compared > 0) d.mean_square = squares / d.compared;
   d.beyond_chance = static_cast<int>(std::count(d.significant.begin(), d.significant.end(), 1));
 }
 
@@ -206,8 +209,9 @@ std::vector<SampledDifference> compare_fields(const ChargeMotion& a, const Charg
     all.push_back(std::move(vx));
     all.push_back(std::move(vy));
   }
+  const Freedoms freedoms{batch_freedom(a.frames), batch_freedom(b.frames)};
   for (SampledDifference& d : all) {
-    judge(d);
+    judge(d, freedoms);
     d.where = most_of(d, a, b);
   }
   return all;
@@ -225,7 +229,8 @@ std::vector<SampledDifference> compare_lines(const ChargeMotion& a, const Charge
     all.push_back(velocity_line(a, b, direction));
   }
   std::erase_if(all, [](const SampledDifference& d) { return d.a.empty(); });
-  for (SampledDifference& d : all) judge(d);
+  const Freedoms freedoms{batch_freedom(a.frames), batch_freedom(b.frames)};
+  for (SampledDifference& d : all) judge(d, freedoms);
   return all;
 }
 

@@ -4,6 +4,7 @@
 
 #include "core/charge_motion.h"
 #include "core/deviation.h"
+#include "diagnose/chance.h"
 
 // What two charge motions have along lines and over the grid, brought to the same places.
 namespace tumble::diagnose {
@@ -11,9 +12,9 @@ namespace tumble::diagnose {
 // Share of comparisons of equal mills in which a kind of numbers may show anything beyond chance.
 inline constexpr double kFalseAlarms = 0.01;
 
-// Fills difference, se, z, significant, compared and beyond_chance from a, a_se, b, b_se. `ratio`: of quantities whose
-// errors grow with them, z is that of the ratio's logarithm.
-void judge(SampledDifference& d, bool ratio = false);
+// Fills difference, se, z, significant, compared, beyond_chance and mean_square from a, a_se, b, b_se. `ratio`: of
+// quantities whose errors grow with them, z is that of the ratio's logarithm.
+void judge(SampledDifference& d, const Freedoms& freedoms, bool ratio = false);
 
 // How the beds of both lie: `deg` from the axis to the middle of the charge, NaN where there is none.
 double common_bed_deg(const ChargeMotion& a, const ChargeMotion& b);

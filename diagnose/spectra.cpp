@@ -112,7 +112,7 @@ SampledDifference compare_series(const char* name, const char* unit, const Serie
     d.b.push_back(pb[i].value);
     d.b_se.push_back(pb[i].se);
   }
-  judge(d, true);
+  judge(d, {}, true);
   return d;
 }
 

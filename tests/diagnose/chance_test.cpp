@@ -19,8 +19,9 @@ TEST(Chance, StudentsTAsTheNormalDeviateOfTheSameChance) {
 }
 
 TEST(Chance, WelchsFreedomLiesBetweenThatOfOneAndOfBoth) {
-  EXPECT_NEAR(welch_freedom(1, 0), kBatchFreedom, 1e-12);
-  EXPECT_NEAR(welch_freedom(1, 1), 2 * kBatchFreedom, 1e-12);
+  EXPECT_NEAR(welch_freedom(1, 0, {}), kBatchFreedom, 1e-12);
+  EXPECT_NEAR(welch_freedom(1, 1, {}), 2 * kBatchFreedom, 1e-12);
+  EXPECT_NEAR(welch_freedom(1, 0.001, {batch_freedom(4), 15}), 3, 1e-3) << "four stills know little of their error";
 }
 
 TEST(Chance, BenjaminiAndHochbergsOwnExample) {

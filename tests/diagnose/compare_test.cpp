@@ -134,6 +134,7 @@ TEST(Compare, FindsAPatchOfCellsAndSaysWhere) {
   EXPECT_GT(found, 0.9 * planted);
   EXPECT_LE(invented, 2) << "one in a hundred of what is named may be chance";
   EXPECT_EQ(occupancy->where, "in the bed");
+  EXPECT_NEAR(occupancy->se[kCells * kCells / 2 + kCells / 2], std::sqrt(2.0) * kError, 1e-12);
   EXPECT_EQ(d.verdict, Verdict::kDiffer);
   EXPECT_NE(d.sentence.find("occupancy differs"), std::string::npos) << d.sentence;
 }
@@ -180,6 +181,7 @@ TEST(Compare, MillsOfOtherSizeAreComparedInWhatHasNoLength) {
   EXPECT_TRUE(find(d.fields, "occupancy"));
   EXPECT_FALSE(find(d.fields, "velocity_x"));
   EXPECT_FALSE(find(d.lines, "surface"));
+  ASSERT_FALSE(d.caveats.empty());
   EXPECT_NE(d.caveats[0].find("differ in diameter"), std::string::npos);
   EXPECT_EQ(compare(mill(1), mill(2)).caveats.size(), 0u);
 }
