@@ -157,6 +157,21 @@ TEST(Compare, WhatHangsOnThePicturesRateDoesNotCountBetweenFilmAndRun) {
   EXPECT_GT(find(d, "granular_temperature_m2_s2")->z, 50) << "it is still told";
 }
 
+TEST(Compare, AFilmTooSlowForItsBallsIsSaidEvenIfItSawSlowBallsAlone) {
+  ChargeMotion film = mill(2);
+  film.source = MotionSource::kFilm;
+  TrackPoint p;
+  p.radius = 0.01;
+  film.tracks = {p};
+  for (auto* v : {&film.field.vx, &film.field.vy})
+    for (double& one : *v) one *= 0.1;
+  // One cell in ten of the run moves faster than 0.95 m/s.
+  film.frames_per_second = 60;
+  EXPECT_TRUE(compare(mill(1), film).caveats.empty());
+  film.frames_per_second = 40;
+  ASSERT_EQ(compare(mill(1), film).caveats.size(), 1u);
+}
+
 TEST(Compare, ConditionsDoNotCountButAreSaid) {
   ChargeMotion b = mill(2);
   b.speed_fraction = {0.9, 0.001};
