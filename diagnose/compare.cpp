@@ -148,7 +148,7 @@ void note_slow_film(Deviation& d, const ChargeMotion& m, const ChargeMotion& oth
   if (radii.empty()) return;
   std::nth_element(radii.begin(), radii.begin() + static_cast<std::ptrdiff_t>(radii.size() / 2), radii.end());
   const double far = std::max(fast(m.field), fast(other.field)) / m.frames_per_second / (2 * radii[radii.size() / 2]);
-  if (far > 1)
+  if (far > 0.9)
     d.caveats.push_back(fmt::format(
         "{}: the faster balls go {:.1f} of their diameters from picture to picture, too far to be followed well. "
         "Velocities, circulation and flights lean towards slow balls; more pictures a second are needed.",
