@@ -90,6 +90,7 @@ void ChargeStatistics::finish(ChargeMotion& motion) {
   motion.shoulder_bulk_deg = edges.shoulder[kBulk];
   motion.shoulder_outer_deg = edges.shoulder[kOuter];
   motion.ring_occupancy = edges.occupancy;
+  motion.ring_occupancy_se = edges.occupancy_se;
 
   const std::vector<ChargeEdges> frames = edges_.finish_frames();
   for (std::size_t i = 0; i < frames.size(); ++i) {

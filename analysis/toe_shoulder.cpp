@@ -13,6 +13,7 @@ namespace {
 constexpr std::size_t kBins = 360;
 constexpr int kReplicates = 400;  // bootstrap: 3.5 % error of the standard error itself
 constexpr std::size_t kMostBlocks = 256;
+constexpr std::size_t kBatches = 16;  // as many as the fields have
 
 std::size_t bin(long i) { return static_cast<std::size_t>(((i % 360) + 360) % 360); }
 
@@ -51,6 +52,25 @@ RingProfile mean_profile(const std::vector<double>& sums) {
   RingProfile mean;
   for (std::size_t i = 0; i < kBins; ++i) mean[i] = sums[kBins + i] > 0 ? sums[i] / sums[kBins + i] : kNotGiven;
   return mean;
+}
+
+// Standard errors of the mean profile: batch means, ratio estimator (Cochran 1977, section 6.3).
+RingProfile profile_errors(const BlockSums& sums, const RingProfile& mean) {
+  RingProfile se;
+  se.fill(kNotGiven);
+  const auto batches = sums.batches(kBatches);
+  if (batches.size() < 4) return se;
+  const double spread = static_cast<double>(batches.size()) / static_cast<double>(batches.size() - 1);
+  for (std::size_t i = 0; i < kBins; ++i) {
+    double squares = 0, seen = 0;
+    for (const auto& b : batches) {
+      const double d = b[i] - mean[i] * b[kBins + i];
+      squares += d * d;
+      seen += b[kBins + i];
+    }
+    if (seen > 0) se[i] = std::sqrt(squares * spread) / seen;
+  }
+  return se;
 }
 
 // Occupancy per block, averaged over the two degrees round an edge: the series whose correlation sets the block length.
@@ -190,6 +210,7 @@ std::vector<ChargeEdges> EdgeStatistics::finish_frames() {
 EdgeEstimates EdgeStatistics::estimate() const {
   EdgeEstimates result;
   result.occupancy = mean_profile(sums_.total());
+  result.occupancy_se = profile_errors(sums_, result.occupancy);
   const ChargeEdges edges = find_edges(smooth(result.occupancy, kMeanBox));
   for (std::size_t l = 0; l < kEdgeShare.size(); ++l) {
     result.toe[l].value = edges.toe[l];

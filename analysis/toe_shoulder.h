@@ -42,6 +42,7 @@ class RingMean {
 struct EdgeEstimates {
   std::array<Estimate, 3> toe, shoulder;  // by EdgeLevel [degrees]
   RingProfile occupancy{};                // time mean, not smoothed
+  RingProfile occupancy_se{};             // by batch means; NaN where not known
 };
 
 // Time mean of the ring's occupancy, and edges with errors, from one profile a frame.

@@ -74,7 +74,9 @@ std::size_t render_run(const io::RunReader& run, const ChargeMotion& truth, cons
                        const fs::path& output, bool as_pictures, const CommonOptions& options) {
   if (run.frame_count() == 0) throw InputError(truth.origin, "holds no frames; simulate for longer");
   const double film_rate = double(plan.format.fps_numerator) / plan.format.fps_denominator;
-  const double span = run.time().back() - run.time().front();
+  const double start = run.time().front() + plan.from;
+  double span = run.time().back() - start;
+  if (!std::isnan(plan.seconds)) span = std::min(span, plan.seconds);
   const double step = 1 / (film_rate * plan.style.slow);
   const auto count = static_cast<std::size_t>(std::floor(span / step + 1e-6)) + 1;
   const double top = scale_top(run, plan.style.colour);
@@ -105,9 +107,9 @@ std::size_t render_run(const io::RunReader& run, const ChargeMotion& truth, cons
     std::vector<Frame> before;  // for trails: the film frames before this batch, then the batch itself
     if (trail > 0)
       for (std::size_t k = from > trail ? from - trail : 0; k < from; ++k)
-        before.push_back(player.at(run.time().front() + double(k) * step));
+        before.push_back(player.at(start + double(k) * step));
     const std::size_t lead = before.size();
-    for (std::size_t i = 0; i < n; ++i) frames[i] = player.at(run.time().front() + double(from + i) * step);
+    for (std::size_t i = 0; i < n; ++i) frames[i] = player.at(start + double(from + i) * step);
     if (trail > 0) before.insert(before.end(), frames.begin(), frames.begin() + static_cast<std::ptrdiff_t>(n));
 
     parallel_for(workers, 1, [&](std::size_t w, std::size_t) {

@@ -22,6 +22,8 @@ ChargeMotion measure_run(const io::RunReader& run, const CommonOptions& options)
 struct FilmPlan {
   render::Style style;
   io::FilmFormat format;
+  // What of the run is shown: after its first frame [s]; not given: all of it.
+  double from = 0, seconds = kNotGiven;
 };
 
 // Of a PNG in a folder of pictures: frame_000000.png.

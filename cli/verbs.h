@@ -8,6 +8,7 @@ void add_run(CLI::App& app);
 void add_simulate(CLI::App& app);
 void add_render(CLI::App& app);
 void add_analyse(CLI::App& app);
+void add_compare(CLI::App& app);
 void add_parameters(CLI::App& app);
 void add_sweep(CLI::App& app);
 void add_calibrate(CLI::App& app);

@@ -93,6 +93,12 @@ struct CameraView {                // films and stills only
   double radius_px_se = kNotGiven, metres_per_pixel_se = kNotGiven;
 };
 
+inline std::array<double, 360> unknown_ring() {
+  std::array<double, 360> ring;
+  ring.fill(kNotGiven);
+  return ring;
+}
+
 struct ChargeMotion {
   MotionSource source = MotionSource::kRunFile;
   std::string origin;  // the file's name
@@ -118,6 +124,7 @@ struct ChargeMotion {
   CameraView camera;
 
   std::array<double, 360> ring_occupancy{};  // time mean, bin i = [i, i + 1) degrees; NaN where hidden
+  std::array<double, 360> ring_occupancy_se = unknown_ring();  // NaN where unknown
   std::vector<ProfileRow> profile;
   Spool<TrackPoint> tracks;           // by frame, then id
   std::vector<SurfacePoint> surface;  // from toe to shoulder

@@ -60,6 +60,7 @@ void walk(Io& io, Motion& m) {
   io.scalar("camera/height", "px", m.camera.height_px);
 
   io.fixed("ring/occupancy", "", m.ring_occupancy);
+  io.later_fixed("ring/occupancy_se", "", m.ring_occupancy_se);
   io.table("profile", m.profile, Column{"frame", "", &ProfileRow::frame}, Column{"time", "s", &ProfileRow::time},
            Column{"mill_angle", "deg", &ProfileRow::mill_angle_deg}, Column{"toe", "deg", &ProfileRow::toe_deg},
            Column{"shoulder", "deg", &ProfileRow::shoulder_deg}, Column{"head", "m", &ProfileRow::head});
@@ -118,6 +119,9 @@ struct Writer {
   }
   void fixed(const std::string& path, const char* unit, const std::array<double, 360>& values) {
     hdf5::write_array<double>(file, path, values, {values.size()}, unit);
+  }
+  void later_fixed(const std::string& path, const char* unit, const std::array<double, 360>& values) {
+    fixed(path, unit, values);
   }
   void grid(const std::string& path, const char* unit, const std::vector<double>& values, int n) {
     const auto edge = static_cast<hsize_t>(values.empty() ? 0 : n);
@@ -189,6 +193,9 @@ struct Reader {
     if (read.size() != values.size())
       throw hdf5::Failure(path + " has " + std::to_string(read.size()) + " bins, not 360");
     std::copy(read.begin(), read.end(), values.begin());
+  }
+  void later_fixed(const std::string& path, const char* unit, std::array<double, 360>& values) const {
+    if (hdf5::exists(file, path)) fixed(path, unit, values);
   }
   void grid(const std::string& path, const char*, std::vector<double>& values, int n) const {
     if (n < 0 || n > kMostCells) throw hdf5::Failure("field/cells is out of range");

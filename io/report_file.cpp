@@ -15,6 +15,7 @@
 #include "core/angle.h"
 #include "core/error.h"
 #include "core/mill_shape.h"
+#include "core/motion_quantities.h"
 #include "io/json_number.h"
 #include "io/output.h"
 #include "io/report/embedded.h"
@@ -31,36 +32,9 @@ namespace {
 
 constexpr std::uintmax_t kLargestEmbedded = 64u << 20;  // [bytes]; a larger film stays beside the report
 
-struct Name {
-  const char* key;
-  const char* words;
-};
-constexpr Name kNames[] = {
-    {"speed_rpm", "Speed"},
-    {"speed_fraction", "Speed, share of critical"},
-    {"filling", "Filling"},
-    {"toe_deg", "Toe"},
-    {"shoulder_deg", "Shoulder"},
-    {"toe_bulk_deg", "Toe, bulk"},
-    {"shoulder_bulk_deg", "Shoulder, bulk"},
-    {"toe_outer_deg", "Toe, outer"},
-    {"shoulder_outer_deg", "Shoulder, outer"},
-    {"head_m", "Head of the charge"},
-    {"centre_of_circulation_x_m", "Centre of circulation, x"},
-    {"centre_of_circulation_y_m", "Centre of circulation, y"},
-    {"departure_deg", "Departure from the shell"},
-    {"impact_toe_deg", "Impact toe"},
-    {"surface_angle_deg", "Surface of the charge, angle of repose"},
-    {"flight_share", "In flight"},
-    {"circulation_time_s", "Time of a turn about the centre of circulation"},
-    {"granular_temperature_m2_s2", "Granular temperature of the charge"},
-    {"torque_N_m", "Torque of one slice"},
-    {"torque_closure_N_m", "Torque by the charge’s weight"},
-};
-
 std::string words_for(const std::string& name) {
-  for (const Name& n : kNames)
-    if (name == n.key) return n.words;
+  for (const MotionQuantity& q : kMotionQuantities)
+    if (name == q.name) return q.words;
   return escaped(name);
 }
 

@@ -8,3 +8,4 @@ cmake --preset release -DTUMBLE_TESTS=ON -DTUMBLE_WARNINGS_AS_ERRORS=ON >/dev/nu
 cmake --build --preset release
 ctest --preset release -j "$(nproc)"
 scripts/check_browser.sh
+scripts/check_compare_page.sh

@@ -6,6 +6,8 @@ namespace tumble::io::report {
 
 extern const std::string_view run_html;  // pages with {{places}} to fill
 extern const std::string_view plots_html;
+extern const std::string_view compare_html;
+extern const std::string_view compare_js;
 extern const std::string_view style_css;
 extern const std::string_view plots_js;  // what all pages' plots share
 extern const std::string_view run_js;

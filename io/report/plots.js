@@ -80,6 +80,16 @@ const tumblePlots = (() => {
     // On paper a plot keeps the size of its letters and takes the page's width.
     addEventListener("beforeprint", () => u.setSize({ width: place.closest(".pair") ? 330 : 680, height: size().height }));
     addEventListener("afterprint", () => u.setSize(size()));
+    // Names in the legend hide and show their line by click; so that keys do it too:
+    for (const name of [...u.root.querySelectorAll(".u-legend .u-series th")].slice(1)) {
+      name.tabIndex = 0;
+      name.setAttribute("role", "button");
+      name.addEventListener("keydown", e => {
+        if (e.key != "Enter" && e.key != " ") return;
+        e.preventDefault();
+        name.click();
+      });
+    }
     plots.push(u);
     return u;
   };

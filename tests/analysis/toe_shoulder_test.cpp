@@ -63,7 +63,7 @@ TEST(ToeShoulder, ErrorAllowsForCorrelationInTime) {
   // Variance of the mean of n AR(1) samples: swing^2 / n (1 + keep) / (1 - keep).
   const double expected = kSwing * std::sqrt((1 + keep) / (1 - keep) / kFrames);
   Random random(7);
-  double sum = 0;
+  double sum = 0, ring = 0;
   for (int run = 0; run < kRuns; ++run) {
     EdgeStatistics statistics(1.0);
     double x = 0;
@@ -77,8 +77,12 @@ TEST(ToeShoulder, ErrorAllowsForCorrelationInTime) {
     EXPECT_NEAR(wrap_180(e.toe[kHalf].value - 230.0), 0.0, 4 * expected);
     EXPECT_LT(e.shoulder[kHalf].se, 0.05);
     sum += e.toe[kHalf].se;
+    ring += e.occupancy_se[230];
+    EXPECT_EQ(e.occupancy_se[100], 0) << "never covered";
   }
   EXPECT_NEAR(sum / kRuns, expected, 0.3 * expected);  // a single film knows its own error to about a third
+  // The ramp loses 0.08 of occupancy a degree, and clips one swing in ten.
+  EXPECT_NEAR(ring / kRuns, 0.08 * expected, 0.3 * 0.08 * expected);
 }
 
 TEST(ToeShoulder, PerFrameValuesAreMeansOverOneLifterPassage) {

@@ -39,6 +39,7 @@ ChargeMotion a_motion(MotionSource source) {
   m.camera = {v(), v(), v(), v(), {v(), v()}, 1280, 720, v(), v(), v(), v()};
   for (double& o : m.ring_occupancy) o = v();
   m.ring_occupancy[17] = kNotGiven;
+  for (double& o : m.ring_occupancy_se) o = v();
   m.profile = {{0, 0.0, v(), v(), v(), v()}, {1, v(), v(), kNotGiven, v(), v()}};
   m.tracks = {{0, 4, 0.0, v(), v(), v(), v(), v(), v(), v(), v(), v(), v(), v()},
               {0, 9, 0.0, v(), v(), v(), v(), v(), kNotGiven, v(), v(), v(), v(), kNotGiven}};
@@ -64,6 +65,7 @@ std::vector<std::uint64_t> numbers_of(const ChargeMotion& m) {
     add(x);
   for (const MotionQuantity& q : kMotionQuantities) add((m.*q.of).value), add((m.*q.of).se);
   for (double o : m.ring_occupancy) add(o);
+  for (double o : m.ring_occupancy_se) add(o);
   for (const auto& r : m.profile)
     for (double x : {double(r.frame), r.time, r.mill_angle_deg, r.toe_deg, r.shoulder_deg, r.head}) add(x);
   for (const auto& p : m.tracks)
