@@ -12,14 +12,14 @@ namespace tumble::analysis {
 namespace {
 
 constexpr int kRays = 72;
-constexpr double kStep = 0.2;         // along a ray [px]
-constexpr int kHalf = 3;              // steps on either side of an edge that its height is taken over
-constexpr double kFaint = 10;         // height of an edge that says nothing [grey levels]
-constexpr double kClear = 60;         // height beyond which edges are all the same
-constexpr double kOnCircle = 0.25;    // distance from the circle within which an edge lies on it [px]
-constexpr double kSharp = 0.5;        // share of such edges from which outlines count as sharp
-constexpr double kWhole = 0.6;        // share from which the right circle is found for certain
-constexpr double kAside = 1.2;        // of other starts for it [px]
+constexpr double kStep = 0.2;       // along a ray [px]
+constexpr int kHalf = 3;            // steps on either side of an edge that its height is taken over
+constexpr double kFaint = 10;       // height of an edge that says nothing [grey levels]
+constexpr double kClear = 60;       // height beyond which edges are all the same
+constexpr double kOnCircle = 0.25;  // distance from the circle within which an edge lies on it [px]
+constexpr double kSharp = 0.58;  // share of such edges from which outlines are sharp: small balls have half by chance
+constexpr double kWhole = 0.6;   // share from which the right circle is found for certain
+constexpr double kAside = 1.2;   // of other starts for it [px]
 constexpr std::size_t kFewest = 12;   // balls to learn from
 constexpr std::size_t kEnough = 100;  // their median share is then known to 0.02
 
