@@ -4,12 +4,12 @@
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
-#include <map>
 #include <memory>
 #include <optional>
 #include <tuple>
 #include <vector>
 
+#include "cli/film_input.h"
 #include "cli/options.h"
 #include "cli/side_by_side.h"
 #include "cli/steps.h"
@@ -23,7 +23,6 @@
 #include "diagnose/impacts.h"
 #include "diagnose/typical_paths.h"
 #include "io/comparison_file.h"
-#include "io/config_file.h"
 #include "io/motion_file.h"
 #include "io/output.h"
 #include "io/run_file.h"
@@ -31,16 +30,11 @@
 namespace tumble::cli {
 namespace {
 
-const std::map<std::string, Rotation> kRotations = {{"auto", Rotation::kUnknown},
-                                                    {"clockwise", Rotation::kClockwise},
-                                                    {"counter_clockwise", Rotation::kCounterClockwise}};
-
 struct Options : CommonOptions {
-  fs::path a, b, output, mill;
-  std::string rotation = "auto";
+  fs::path a, b, output;
   std::vector<int> balls_a, balls_b;
   bool no_films = false;
-  analysis::TracksOptions film;
+  FilmInput film;
 };
 
 // A folder for the small films, gone with its owner.
@@ -138,21 +132,16 @@ double averaged_seconds(const io::RunReader& run) {
 
 void compare(Options o) {
   limit_threads(o.threads);
-  o.film.rotation = parse_name(o.rotation, "--rotation", kRotations);
-  if (!std::isnan(o.film.recorded_fps) && !(o.film.recorded_fps > 0))
-    throw InputError("--recorded-fps", "must be a positive number of frames per second");
   for (const fs::path& input : {o.a, o.b}) check_there(input);
-  std::optional<Config> mill;
-  if (!o.mill.empty()) mill = io::read_config(o.mill);
-  o.film.mill = mill ? &*mill : nullptr;
+  settle(o.film);
   const OutputFolder folder(o.output);
   const fs::path json_file = o.output / "deviation.json", report_file = o.output / "report.html";
   for (const fs::path& file : {json_file, report_file}) {
     io::check_output_file(file, o.force);
-    for (const fs::path& input : {o.a, o.b, o.mill}) io::check_not_input(file, input);
+    for (const fs::path& input : {o.a, o.b, o.film.mill}) io::check_not_input(file, input);
   }
 
-  const Source a = read(o.a, o.film, o), b = read(o.b, o.film, o);
+  const Source a = read(o.a, o.film.told, o), b = read(o.b, o.film.told, o);
   Deviation deviation = diagnose::compare(a.motion, b.motion);
   if (a.run && b.run)
     for (SampledDifference& impacts : diagnose::compare_impacts(a.run->result().spectrum, averaged_seconds(*a.run),
@@ -201,10 +190,7 @@ void add_compare(CLI::App& app) {
   verb->add_option("a", o->a, "RUN.h5, MOTION.h5, a film, a folder of stills or TRACKS.csv")->required();
   verb->add_option("b", o->b, "What to compare it with, likewise; differences are B - A")->required();
   verb->add_option("-o,--output", o->output, "Folder for report.html and deviation.json")->required();
-  verb->add_option("--mill", o->mill, "MILL.toml with what is known of the mill in a film; may be partial");
-  verb->add_option("--recorded-fps", o->film.recorded_fps, "The camera's rate where the film's is another, 1/s");
-  verb->add_option("--rotation", o->rotation, "How the mill turns in a film: auto, clockwise, counter_clockwise")
-      ->capture_default_str();
+  add_film_input(*verb, o->film);
   verb->add_option("--balls-a", o->balls_a, "Numbers of balls of A whose paths are wanted too, such as 3,17")
       ->delimiter(',');
   verb->add_option("--balls-b", o->balls_b, "The same of B")->delimiter(',');

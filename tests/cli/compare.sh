@@ -2,21 +2,7 @@
 # What `tumble compare` promises: every kind of input, one line for each that is wrong, nothing half-written, a summary that
 # agrees with the files.
 #   tests/cli/compare.sh TUMBLE_BINARY SOURCE_FOLDER
-set -uo pipefail
-tumble=$(realpath "$1")
-source=$(realpath "$2")
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-cd "$work"
-failures=0
-fail() { failures=$((failures + 1)); echo "FAILED: $*"; }
-done_by() { "$tumble" "$@" --quiet >out.txt 2>err.txt || fail "$* : $(head -c 300 err.txt)"; }
-refused() {  # PATTERN COMMAND...
-  "$tumble" "${@:2}" --quiet >out.txt 2>err.txt
-  local status=$?
-  [ $status -eq 2 ] && [ "$(wc -l <err.txt)" -eq 1 ] && grep -q -- "$1" err.txt ||
-    fail "${*:2} : expected one line with \"$1\" and status 2, got $status: $(head -c 300 err.txt)"
-}
+source "$(dirname "$0")/promises.sh"
 get() { grep -o "\"$1\": [^,]*" "$2" | head -1 | cut -d' ' -f2-; }
 
 short=(--set run.spin_up=0.2 --set run.revolutions=0.6 --set run.frames_per_second=60)

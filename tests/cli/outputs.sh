@@ -2,19 +2,7 @@
 # What the command promises of its outputs: replaced only with --force, a complete run is resumed at once, and the same
 # quantity is the same number whichever verb tells it.
 #   tests/cli/outputs.sh TUMBLE_BINARY SOURCE_FOLDER
-set -uo pipefail
-tumble=$(realpath "$1")
-source=$(realpath "$2")
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-cd "$work"
-failures=0
-fail() { failures=$((failures + 1)); echo "FAILED: $*"; }
-done_by() { "$tumble" "$@" --quiet >out.txt 2>err.txt || fail "$* : $(head -c 300 err.txt)"; }
-refused() {  # PATTERN COMMAND...
-  "$tumble" "${@:2}" --quiet >out.txt 2>err.txt
-  [ $? -eq 2 ] && grep -q -- "$1" err.txt || fail "${*:2} : expected a refusal with \"$1\", got $(head -c 300 err.txt)"
-}
+source "$(dirname "$0")/promises.sh"
 number() { grep -o "\"$1\": [-0-9.e+]*" "$2" | cut -d' ' -f2; }
 
 run=("$source/examples/lab_mill_55cm.toml" -o run.h5 --set run.spin_up=0.1 --set run.revolutions=0.3)

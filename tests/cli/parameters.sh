@@ -2,15 +2,8 @@
 # What `tumble parameters` prints can be pasted: the lines that come last are read by the program's own config reader.
 # Every mistake in the data gets its one line with file, line and column, exit status 2, and leaves no page.
 #   tests/cli/parameters.sh TUMBLE_BINARY SOURCE_FOLDER
-set -uo pipefail
-tumble=$(realpath "$1")
-source=$(realpath "$2")
+source "$(dirname "$0")/promises.sh"
 data=$source/examples/experiments
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-cd "$work"
-failures=0
-fail() { failures=$((failures + 1)); echo "FAILED: $*"; }
 
 # A mill without contacts; what was found is appended.
 sed '/^\[contact\]/,/^\[run\]/{/^\[run\]/!d}' "$source/examples/lab_mill_55cm.toml" >bare.toml

@@ -2,18 +2,8 @@
 # What the command promises of campaigns: a sweep or a calibration that was killed at any moment goes on to the bytes of
 # an undisturbed one, the number of threads does not show, and held-out data do not move the fit.
 #   tests/cli/sweep.sh TUMBLE_BINARY SOURCE_FOLDER
-set -uo pipefail
-tumble=$(realpath "$1")
-mill=$(realpath "$2")/examples/slice_mill_55cm.toml
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-cd "$work"
-failures=0
-fail() { failures=$((failures + 1)); echo "FAILED: $*"; }
-refused() {  # PATTERN COMMAND...
-  "$tumble" "${@:2}" --quiet >out.txt 2>err.txt
-  [ $? -eq 2 ] && grep -q -- "$1" err.txt || fail "${*:2} : expected a refusal with \"$1\", got $(head -c 300 err.txt)"
-}
+source "$(dirname "$0")/promises.sh"
+mill=$source/examples/slice_mill_55cm.toml
 same() { cmp -s "$1" "$2" || fail "$1 and $2 differ"; }
 
 short=(--set run.spin_up=0.1 --set run.revolutions=0.3 --set run.frames_per_second=50 --set charge.count=60)
