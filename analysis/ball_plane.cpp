@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/angle.h"
+#include "core/quantile.h"
 
 namespace tumble::analysis {
 namespace {
@@ -165,11 +166,7 @@ BallPlane measure_ball_plane(const std::vector<SeenFrame>& frames, double mill_r
   BallPlane plane;
   plane.touching = sharp_edge(gaps, 0.85, 1.2, +1);
   find_circle(reaches, plane);
-  if (!sides.empty()) {
-    const auto outer = sides.begin() + static_cast<std::ptrdiff_t>(0.99 * static_cast<double>(sides.size()));
-    std::nth_element(sides.begin(), outer, sides.end());
-    plane.outermost = *outer;
-  }
+  plane.outermost = quantile_of(std::move(sides), 0.99);
   plane.factor = lengths_factor(plane, prior);
   return plane;
 }

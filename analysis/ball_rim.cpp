@@ -5,6 +5,7 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
+#include "core/quantile.h"
 #include "core/statistics.h"
 #include "core/units.h"
 
@@ -151,9 +152,7 @@ double share_on(const std::vector<cv::Mat>& greys, std::vector<std::vector<cv::P
       shares.push_back(fit.share);
       if (std::hypot(fit.u - p.x, fit.v - p.y) < 0.15 * radius) p = {fit.u, fit.v};
     }
-  const auto middle = shares.begin() + static_cast<std::ptrdiff_t>(shares.size() / 2);
-  std::nth_element(shares.begin(), middle, shares.end());
-  return *middle;
+  return median_of(shares);
 }
 
 }  // namespace

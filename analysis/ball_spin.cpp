@@ -7,6 +7,7 @@
 #include <span>
 
 #include "core/parallel_for.h"
+#include "core/quantile.h"
 #include "core/units.h"
 
 namespace tumble::analysis {
@@ -38,13 +39,6 @@ Basis basis_at(const Sighting& s, double reach) {
   Basis b;
   b << 1, x, y, x * x, x * y, y * y;
   return b;
-}
-
-double median_of(std::vector<double>& v) {
-  if (v.empty()) return kNotGiven;
-  const auto middle = v.begin() + static_cast<std::ptrdiff_t>(v.size() / 2);
-  std::nth_element(v.begin(), middle, v.end());
-  return *middle;
 }
 
 // Takes off what stands still in the picture: a robust quadratic in place, of least absolute residuals, so that a few
@@ -285,9 +279,7 @@ Expectation expect(const std::vector<std::vector<Seen*>>& paths, const Expectati
 double upper_quartile(std::vector<double>& v) {
   constexpr std::size_t kLeast = 5;  // sightings, to say anything of a ball
   if (v.size() < kLeast) return 0;
-  const auto at = v.begin() + static_cast<std::ptrdiff_t>(3 * v.size() / 4);
-  std::nth_element(v.begin(), at, v.end());
-  return *at;
+  return quantile_of(v, 0.75);
 }
 
 struct PathSpins {

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "core/angle.h"
+#include "core/quantile.h"
 #include "core/random.h"
 
 // Method. Each track is cut into the fewest stretches that are parabolas within the noise (optimal partition by dynamic
@@ -194,9 +195,8 @@ double noise_factor(const std::vector<Track>& tracks) {
       squares.push_back((dx * dx + dy * dy) / variance);
     }
   if (squares.empty()) return kNotGiven;
-  const auto at = squares.begin() + static_cast<std::ptrdiff_t>(kShare * static_cast<double>(squares.size() - 1));
-  std::nth_element(squares.begin(), at, squares.end());
-  return std::max(kLeastNoise * extent, std::sqrt(*at / (-2 * std::log(1 - kShare))));
+  return std::max(kLeastNoise * extent,
+                  std::sqrt(quantile_of(std::move(squares), kShare) / (-2 * std::log(1 - kShare))));
 }
 
 // Turning about the axis at one speed says as much as the parabola does: a carried ball.

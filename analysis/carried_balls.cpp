@@ -7,6 +7,7 @@
 #include <functional>
 
 #include "core/angle.h"
+#include "core/quantile.h"
 #include "core/random.h"
 
 namespace tumble::analysis {
@@ -191,9 +192,7 @@ std::vector<Window> joined(const std::vector<const Window*>& windows) {
 double noise_of(const std::vector<Window>& windows) {
   std::vector<double> variances;
   for (const Window& w : windows) variances.push_back(w.squares / w.freedom);
-  const auto middle = variances.begin() + static_cast<std::ptrdiff_t>(variances.size() / 2);
-  std::nth_element(variances.begin(), middle, variances.end());
-  return std::max(std::sqrt(*middle), 1e-3);
+  return std::max(std::sqrt(median_of(std::move(variances))), 1e-3);
 }
 
 }  // namespace

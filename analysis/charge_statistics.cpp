@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "analysis/circulation.h"
+#include "core/quantile.h"
 #include "core/statistics.h"
 #include "core/units.h"
 
@@ -33,10 +34,9 @@ Estimate filling_of_deep_mill(const Field& field, double mill_radius, double lay
   for (const double o : field.occupancy)
     if (o > 0.5 * most) dense.push_back(o);
   if (dense.empty()) return {};
-  const auto at = dense.begin() + static_cast<std::ptrdiff_t>(0.9 * static_cast<double>(dense.size() - 1));
-  std::nth_element(dense.begin(), at, dense.end());
   const double cross_section = kPi * mill_radius * mill_radius;
-  const double high = covered / *at / cross_section, low = std::min(high, scattered / cross_section);
+  const double high = covered / quantile_of(std::move(dense), 0.9) / cross_section,
+               low = std::min(high, scattered / cross_section);
   return {0.5 * (low + high), (high - low) / std::sqrt(12.0)};
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
+#include "core/quantile.h"
 #include "core/units.h"
 
 namespace tumble::analysis {
@@ -30,9 +31,7 @@ std::vector<EdgePixel> strong_edges(const cv::Mat& grey, const cv::Mat& where) {
     for (int u = 0; u < magnitude.cols; u += 3)
       if (where.empty() || where.at<uchar>(v, u) != 0) sample.push_back(magnitude.at<float>(v, u));
   if (sample.empty()) return {};
-  auto tenth = sample.begin() + static_cast<std::ptrdiff_t>(0.9 * static_cast<double>(sample.size()));
-  std::nth_element(sample.begin(), tenth, sample.end());
-  const float threshold = std::max(0.4f, *tenth);
+  const float threshold = std::max(0.4f, quantile_of(std::move(sample), 0.9));
   std::vector<EdgePixel> edges;
   for (int v = 2; v < magnitude.rows - 2; ++v) {
     for (int u = 2; u < magnitude.cols - 2; ++u) {
@@ -158,9 +157,7 @@ RingEdge fit_ring(const cv::Mat& grey, cv::Point2d centre, double radius, double
     steps.push_back(best / 2);
   }
   if (points.size() < 40) return ring;
-  std::vector<double> ordered = steps;
-  std::nth_element(ordered.begin(), ordered.begin() + static_cast<std::ptrdiff_t>(ordered.size() / 2), ordered.end());
-  const double typical = ordered[ordered.size() / 2];
+  const double typical = median_of(steps);
   std::vector<double> weights(points.size());
   Circle circle{centre.x, centre.y, radius};
   double scale = reach;
@@ -175,9 +172,7 @@ RingEdge fit_ring(const cv::Mat& grey, cv::Point2d centre, double radius, double
     const Circle next = fit_circle(points, weights);
     if (!(next.radius > 0) || std::hypot(next.u - centre.x, next.v - centre.y) > 2 * reach) break;
     circle = next;
-    auto middle = misses.begin() + static_cast<std::ptrdiff_t>(misses.size() / 2);
-    std::nth_element(misses.begin(), middle, misses.end());
-    scale = std::clamp(4.0 * *middle, 1.5, reach);
+    scale = std::clamp(4.0 * median_of(std::move(misses)), 1.5, reach);
   }
   int on = 0;
   double strength = 0;

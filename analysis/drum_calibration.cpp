@@ -15,6 +15,7 @@
 #include "analysis/even_turn.h"
 #include "analysis/film_reader.h"
 #include "core/error.h"
+#include "core/quantile.h"
 #include "core/units.h"
 
 namespace tumble::analysis {
@@ -244,11 +245,10 @@ DrumSightings look(const DrumReader& reader, const std::vector<double>& angles, 
     for (const auto& f : found)
       if (f[piece].seen) rests.push_back(f[piece].grey_deviation);
     if (rests.empty()) continue;
-    const auto clear = rests.begin() + static_cast<std::ptrdiff_t>(rests.size() / 4);
-    std::nth_element(rests.begin(), clear, rests.end());
+    const double clear = quantile_of(std::move(rests), 0.25);
     for (std::size_t t = 0; t < angles.size(); ++t) {
       const auto& f = found[t][piece];
-      if (!f.seen || f.grey_deviation > kCovered * *clear) continue;
+      if (!f.seen || f.grey_deviation > kCovered * clear) continue;
       seen.sightings.push_back({static_cast<int>(t), k, texture.pixel_of(k, angles[t], f), f.weight});
       in_front += seen.pieces[piece].layer == 0;
     }
@@ -484,8 +484,7 @@ DrumView calibrate_drum(const NextPicture& next, double frames_per_second, const
   std::vector<double> offsets;  // of the fitted angles from the first ones
   for (std::size_t i = 0; i < camera.frames.size(); ++i)
     offsets.push_back(camera.fit.angles[i] - turn.angles[camera.frames[i]]);
-  std::nth_element(offsets.begin(), offsets.begin() + static_cast<std::ptrdiff_t>(offsets.size() / 2), offsets.end());
-  const double offset = offsets[offsets.size() / 2];
+  const double offset = median_of(std::move(offsets));
   for (std::size_t t = 0; t < sample.greys.size(); ++t)
     view.angles.push_back(reader->angle_near(reader->unroll()(sample.greys[t]), turn.angles[t] + offset, kRoughTurn));
   view.turn_per_frame = turn_per_frame(view.angles, turn.step);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
+#include "core/quantile.h"
 #include "core/units.h"
 
 namespace tumble::analysis {
@@ -31,11 +32,7 @@ cv::Mat hidden_part(const cv::Mat& mean, const cv::Mat& deviation, const DrumPos
       if (r > 1.3 * shell) outside.push_back(deviation.at<float>(v, u));
     }
   double noise = 1;  // where nothing moves; of the quieter half: other things may move outside of the drum
-  if (outside.size() > 200) {
-    const auto at = outside.begin() + static_cast<std::ptrdiff_t>(outside.size() / 3);
-    std::nth_element(outside.begin(), at, outside.end());
-    noise = *at;
-  }
+  if (outside.size() > 200) noise = quantile_of(std::move(outside), 1.0 / 3);
   cv::Mat smooth, still, edge_u, edge_v, edge;
   cv::GaussianBlur(deviation, smooth, {}, 0.8);
   still = smooth < 1.0 + 1.6 * noise;
@@ -85,9 +82,7 @@ cv::Mat hidden_part(const cv::Mat& mean, const cv::Mat& deviation, const DrumPos
       if (frame.contains(p)) round.push_back(mean.at<float>(p));
     }
     if (round.empty()) continue;
-    const auto middle = round.begin() + static_cast<std::ptrdiff_t>(round.size() / 2);
-    std::nth_element(round.begin(), middle, round.end());
-    usual[r] = *middle;
+    usual[r] = median_of(std::move(round));
   }
 
   cv::Mat near_sharp, labels, stats, centres;

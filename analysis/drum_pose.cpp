@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include "core/quantile.h"
 #include "core/units.h"
 
 namespace tumble::analysis {
@@ -160,9 +161,7 @@ class Adjustment {
         sigma2_[k] = kNotGiven;
         continue;
       }
-      const auto middle = chi2.begin() + static_cast<std::ptrdiff_t>(chi2.size() / 2);
-      std::nth_element(chi2.begin(), middle, chi2.end());
-      sigma2_[k] = std::max(1.0, *middle / 1.386);  // the median of chi2 with two degrees of freedom
+      sigma2_[k] = std::max(1.0, median_of(std::move(chi2)) / 1.386);  // the median of chi2 with two degrees of freedom
       total[static_cast<std::size_t>(seen_.pieces[k].layer)] += weights / sigma2_[k];
     }
     for (std::size_t l = 0; l < say_.size(); ++l) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
+#include "core/quantile.h"
 #include "core/units.h"
 
 namespace tumble::analysis {
@@ -83,9 +84,7 @@ DrumAngle DrumReader::refined(const cv::Mat& moving, double rough) const {
     if (!(weights > 0)) return result;
     middle = sum / weights;
     for (std::size_t i = 0; i < says.size(); ++i) misses[i] = std::abs(says[i].turn - middle);
-    const auto half = misses.begin() + static_cast<std::ptrdiff_t>(misses.size() / 2);
-    std::nth_element(misses.begin(), half, misses.end());
-    scale = std::max(1e-6, 1.48 * *half);
+    scale = std::max(1e-6, 1.48 * median_of(misses));
     result.pieces = static_cast<int>(
         std::count_if(says.begin(), says.end(), [&](const Say& s) { return std::abs(s.turn - middle) < 4 * scale; }));
     // Pieces of a band overlap by half: neighbours do not err independently.

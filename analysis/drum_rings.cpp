@@ -5,6 +5,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "analysis/circles.h"
+#include "core/quantile.h"
 #include "core/units.h"
 
 namespace tumble::analysis {
@@ -97,10 +98,7 @@ std::vector<RingEdgePoints> find_rings(const cv::Mat& grey, const DrumPose& pose
         directions.push_back(k);
       }
       if (radii.size() < 24) continue;
-      std::vector<double> ordered = radii;
-      const auto middle = ordered.begin() + static_cast<std::ptrdiff_t>(ordered.size() / 2);
-      std::nth_element(ordered.begin(), middle, ordered.end());
-      const double radius = *middle;
+      const double radius = median_of(radii);
       double sum = 0, squares = 0;
       for (std::size_t p = 0; p < radii.size(); ++p) {
         if (std::abs(radii[p] - radius) > reach) continue;
@@ -125,9 +123,7 @@ TurningDisc find_turning_disc(const cv::Mat& mean, const cv::Mat& deviation) {
   std::vector<float> sample;
   for (int v = 0; v < deviation.rows; v += 3)
     for (int u = 0; u < deviation.cols; u += 3) sample.push_back(deviation.at<float>(v, u));
-  const auto quiet = sample.begin() + static_cast<std::ptrdiff_t>(sample.size() / 20);
-  std::nth_element(sample.begin(), quiet, sample.end());
-  const double threshold = 1.0 + 1.6 * std::min<double>(*quiet, 6.0);
+  const double threshold = 1.0 + 1.6 * std::min<double>(quantile_of(std::move(sample), 0.05), 6.0);
   cv::Mat smooth, moving, near;
   cv::GaussianBlur(deviation, smooth, {}, 1.0);
   moving = smooth > threshold;

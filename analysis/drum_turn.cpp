@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/config.h"
+#include "core/quantile.h"
 #include "core/units.h"
 
 namespace tumble::analysis {
@@ -157,9 +158,7 @@ double commonest_turn(const std::vector<RoundSpectrum>& pictures, double expecte
 double median_step(const std::vector<double>& angles) {
   std::vector<double> steps;
   for (std::size_t t = 0; t + 1 < angles.size(); ++t) steps.push_back(angles[t + 1] - angles[t]);
-  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-  std::nth_element(steps.begin(), middle, steps.end());
-  return *middle;
+  return median_of(steps);
 }
 
 // How much of the drum's directions both a picture and the mean of others show, by the turn between them. Where part of

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <vector>
 
+#include "core/quantile.h"
+
 namespace tumble::analysis {
 namespace {
 
@@ -13,12 +15,6 @@ constexpr double kShare = 0.7;            // of the changes from block to block:
 constexpr double kUneven = 0.1;           // of the speed: a change that motors and falling charges do not make
 constexpr double kNoise = 4;              // times by which a change must exceed what misread angles make of it
 
-double quantile(std::vector<double> v, double share) {
-  const auto at = v.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(v.size() - 1));
-  std::nth_element(v.begin(), at, v.end());
-  return *at;
-}
-
 // Median of the slopes between all pairs: a single angle that is misread hardly changes it.
 double speed_of(std::span<const double> angles) {
   std::vector<double> slopes;
@@ -26,7 +22,7 @@ double speed_of(std::span<const double> angles) {
     for (std::size_t j = i + 1; j < angles.size(); ++j)
       if (!std::isnan(angles[i]) && !std::isnan(angles[j]))
         slopes.push_back((angles[j] - angles[i]) / static_cast<double>(j - i));
-  return slopes.size() < kBlock ? std::nan("") : quantile(std::move(slopes), 0.5);
+  return slopes.size() < kBlock ? std::nan("") : median_of(std::move(slopes));
 }
 
 // As if no picture were repeated or missing: steps that clearly are none, two or more of the usual ones count as one.
@@ -36,7 +32,7 @@ std::vector<double> without_gaps(std::span<const double> angles) {
   for (std::size_t i = 1; i < angles.size(); ++i)
     if (const double step = angles[i] - angles[i - 1]; !std::isnan(step)) steps.push_back(step);
   if (steps.empty()) return even;
-  const double usual = quantile(steps, 0.5);
+  const double usual = median_of(steps);
   double off = 0;
   for (std::size_t i = 1; i < angles.size(); ++i) {
     const double times = (angles[i] - angles[i - 1]) / usual, whole = std::round(times);
@@ -61,13 +57,13 @@ Evenness evenness_of(std::span<const double> read) {
   for (std::size_t i = 2; i < angles.size(); ++i)
     if (const double d = angles[i] - 2 * angles[i - 1] + angles[i - 2]; !std::isnan(d)) seconds.push_back(std::abs(d));
   if (seconds.empty()) return {};
-  const double sigma = 1.4826 * quantile(std::move(seconds), 0.5) / std::sqrt(6.0);
+  const double sigma = 1.4826 * median_of(std::move(seconds)) / std::sqrt(6.0);
   // Of the difference of two slopes over a block each, of angles that err independently.
   const double n = static_cast<double>(kBlock), by_noise = sigma * std::sqrt(24 / (n * n * n));
-  const double speed = quantile(speeds, 0.5);
-  const bool even = quantile(std::move(changes), kShare) < kUneven * std::abs(speed) + kNoise * by_noise;
+  const double speed = median_of(speeds);
+  const bool even = quantile_of(std::move(changes), kShare) < kUneven * std::abs(speed) + kNoise * by_noise;
   for (double& s : speeds) s = std::abs(s - speed);
-  return {even, 1.4826 * quantile(std::move(speeds), 0.5)};
+  return {even, 1.4826 * median_of(std::move(speeds))};
 }
 
 }  // namespace tumble::analysis

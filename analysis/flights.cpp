@@ -7,6 +7,7 @@
 #include <map>
 
 #include "core/angle.h"
+#include "core/quantile.h"
 #include "core/random.h"
 
 namespace tumble::analysis {
@@ -123,12 +124,7 @@ Blur blur_of(std::span<const TrackPoint> sorted) {
     intervals.push_back(dt);
   }
   if (thirds.empty()) return {};
-  const auto median = [](std::vector<double>& v) {
-    const auto middle = v.begin() + static_cast<std::ptrdiff_t>(v.size() / 2);
-    std::nth_element(v.begin(), middle, v.end());
-    return *middle;
-  };
-  return {median(thirds) / (0.6745 * std::sqrt(20.0)), median(intervals)};
+  return {median_of(std::move(thirds)) / (0.6745 * std::sqrt(20.0)), median_of(std::move(intervals))};
 }
 
 // Shortest stretch whose curvature is known to a tenth of gravity: that of n even places has the deviation
@@ -334,9 +330,7 @@ FlightAngles flight_angles(std::span<const Flight> flights, double shell_reach, 
   }
   FlightAngles angles{median_direction(departures), {}};
   if (!hugged.empty()) {
-    const auto middle = hugged.begin() + static_cast<std::ptrdiff_t>(hugged.size() / 2);
-    std::nth_element(hugged.begin(), middle, hugged.end());
-    angles.departure_deg.se = std::hypot(angles.departure_deg.se, kFades * *middle);
+    angles.departure_deg.se = std::hypot(angles.departure_deg.se, kFades * median_of(std::move(hugged)));
   }
   constexpr double kBefore = 60;  // by which flights may end short of where they usually begin [degrees]
   const double origin = angles.departure_deg.value - kBefore;

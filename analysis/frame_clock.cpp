@@ -1,4 +1,5 @@
 #include "analysis/frame_clock.h"
+#include "core/quantile.h"
 
 #include <Eigen/Dense>
 #include <algorithm>
@@ -29,19 +30,12 @@ constexpr double kWorstFit = 6;           // chi square over freedom
 constexpr std::array<std::size_t, 10> kWidths = {1, 2, 3, 5, 8, 12, 20, 30, 45, 60};  // frames to each side of a gap
 constexpr double kLeastBetter = 10;  // chi square by which a step must beat a change of speed
 
-double median(std::vector<double> v) {
-  if (v.empty()) return kNotGiven;
-  const auto middle = v.begin() + static_cast<std::ptrdiff_t>(v.size() / 2);
-  std::nth_element(v.begin(), middle, v.end());
-  return *middle;
-}
-
 // 1.48 times the median of absolute deviations: the standard deviation of normal numbers.
 double robust_deviation(const std::vector<double>& v) {
-  const double m = median(v);
+  const double m = median_of(v);
   std::vector<double> off;
   for (const double x : v) off.push_back(std::abs(x - m));
-  return 1.4826 * median(off);
+  return 1.4826 * median_of(off);
 }
 
 // Logarithm of each difference over what is usual around it; NaN where there is none. Usual is the upper quartile: half
@@ -56,9 +50,8 @@ std::vector<double> relative_change(std::span<const double> difference) {
         around.push_back(difference[static_cast<std::size_t>(k)]);
     const double own = difference[static_cast<std::size_t>(i)];
     if (around.size() < 4 || std::isnan(own)) continue;
-    const auto at = around.begin() + static_cast<std::ptrdiff_t>(0.7 * static_cast<double>(around.size()));
-    std::nth_element(around.begin(), at, around.end());
-    if (*at > 0) out[static_cast<std::size_t>(i)] = std::log(std::max(own, 1e-6 * *at) / *at);
+    const double at = quantile_of(std::move(around), 0.7);
+    if (at > 0) out[static_cast<std::size_t>(i)] = std::log(std::max(own, 1e-6 * at) / at);
   }
   return out;
 }
@@ -79,7 +72,7 @@ class Pictures {
       if (moves(i + 1)) add(scatters, std::log(one_[i]) - 0.5 * std::log(one_[i - 1] * one_[i + 1]));
     }
     if (std::min(growths.size(), scatters.size()) < kFewestGrowths) return;
-    growth_ = median(growths);
+    growth_ = median_of(growths);
     asked_ = growth_ > kClearGrowth * std::max(robust_deviation(growths), robust_deviation(scatters));
   }
 
@@ -127,7 +120,7 @@ double local_speed(const Drum& drum, std::size_t i) {
   const std::size_t from = i > kSpeedWindow ? i - kSpeedWindow : 1;
   for (std::size_t k = std::max<std::size_t>(1, from); k < std::min(drum.x.size(), i + kSpeedWindow); ++k)
     steps.push_back((drum.angle[k] - drum.angle[k - 1]) / (drum.x[k] - drum.x[k - 1]));
-  const double m = median(steps);
+  const double m = median_of(steps);
   double sum = 0, n = 0;  // the mean of those near the median: a median of noise alone is not sharp enough
   const double width = 3 * robust_deviation(steps) + 1e-12;
   for (const double s : steps)
@@ -336,7 +329,7 @@ FrameClock find_frame_clock(const FrameEvidence& evidence) {
   for (const double c : change)
     if (c > std::log(kRepeat)) usual.push_back(c);
   const double scatter = usual.size() < 4 ? 0.1 : std::max(0.02, robust_deviation(usual));
-  const double middle = usual.empty() ? 0.0 : median(usual);
+  const double middle = usual.empty() ? 0.0 : median_of(usual);
 
   const Pictures pictures(evidence, change);
 
@@ -377,7 +370,7 @@ FrameClock find_frame_clock(const FrameEvidence& evidence) {
     }
     std::vector<double> errors;
     for (const Gap& g : gaps) errors.push_back(g.error);
-    clock.drops_can_be_seen = median(errors) < 1 / kSure;
+    clock.drops_can_be_seen = median_of(errors) < 1 / kSure;
   }
 
   int source = 0;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/angle.h"
+#include "core/quantile.h"
 
 namespace tumble::analysis {
 namespace {
@@ -39,10 +40,7 @@ double half_bulk(std::span<const double> occupancy) {
   std::vector<double> covered;
   for (const double o : occupancy)
     if (o > 0.05) covered.push_back(o);
-  if (covered.empty()) return kNotGiven;
-  const auto at = covered.begin() + static_cast<std::ptrdiff_t>(0.9 * static_cast<double>(covered.size() - 1));
-  std::nth_element(covered.begin(), at, covered.end());
-  return 0.5 * *at;
+  return 0.5 * quantile_of(std::move(covered), 0.9);
 }
 
 std::vector<double> surface_heights(std::span<const double> occupancy, int n, double cell, double level, double bed,

@@ -14,6 +14,7 @@
 #include "core/angle.h"
 #include "core/error.h"
 #include "core/mill_shape.h"
+#include "core/quantile.h"
 
 namespace tumble::analysis {
 namespace {
@@ -23,18 +24,12 @@ constexpr double kPoorCentre = 0.015;  // relative, of the axis by the balls tha
 constexpr double kShellError = 0.015;  // relative, of the shell's radius by the outermost balls: the scale's
 constexpr double kSizeError = 0.05;    // relative, of the size that balls seem to have
 
-double median(std::vector<double> v) {
-  const auto middle = v.begin() + static_cast<std::ptrdiff_t>(v.size() / 2);
-  std::nth_element(v.begin(), middle, v.end());
-  return *middle;
-}
-
 // A track has one ball: its radius is the median of what was seen.
 std::map<int, double> radius_of_track(const PixelTracks& tracks) {
   std::map<int, std::vector<double>> seen;
   for (const PixelSighting& s : tracks.sightings) seen[s.track].push_back(s.radius);
   std::map<int, double> radius;
-  for (auto& [track, radii] : seen) radius[track] = median(std::move(radii));
+  for (auto& [track, radii] : seen) radius[track] = median_of(std::move(radii));
   return radius;
 }
 

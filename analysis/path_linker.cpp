@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "analysis/assignment.h"
+#include "core/quantile.h"
 
 namespace tumble::analysis {
 namespace {
@@ -260,9 +261,7 @@ double colour_noise(const std::vector<SeenFrame>& frames, const std::vector<Path
       for (std::size_t c = 0; c < 3; ++c)
         changes.push_back(std::abs(at(frames, path.seen[i]).colour[c] - at(frames, path.seen[i - 1]).colour[c]));
   if (changes.size() < 100) return kNotGiven;
-  const auto middle = changes.begin() + static_cast<std::ptrdiff_t>(changes.size() / 2);
-  std::nth_element(changes.begin(), middle, changes.end());
-  return 2.0 + 2 * 1.48 * *middle;  // tails are long: marks turn, lights pass
+  return 2.0 + 2 * 1.48 * median_of(std::move(changes));  // tails are long: marks turn, lights pass
 }
 
 double colour_cost(const Sighting& a, const Sighting& b, double noise) {

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "core/angle.h"
+#include "core/quantile.h"
 #include "core/random.h"
 
 namespace tumble::analysis {
@@ -19,9 +20,7 @@ constexpr std::size_t kBins = 360;
 double within_which_most_lie(std::vector<double>& misses) {
   std::erase_if(misses, [](double m) { return std::isnan(m); });
   if (misses.size() < kReplicates / 2) return kNotGiven;
-  const auto at = misses.begin() + static_cast<std::ptrdiff_t>(0.683 * static_cast<double>(misses.size()));
-  std::nth_element(misses.begin(), at, misses.end());
-  return *at;
+  return quantile_of(misses, 0.683);
 }
 
 }  // namespace

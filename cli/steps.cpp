@@ -14,6 +14,7 @@
 #include "core/angle.h"
 #include "core/error.h"
 #include "core/parallel_for.h"
+#include "core/quantile.h"
 #include "io/image_file.h"
 #include "io/output.h"
 #include "io/tracks_file.h"
@@ -31,9 +32,7 @@ double scale_top(const io::RunReader& run, render::Colour colour) {
       values.push_back(colour == render::Colour::kSpin ? std::abs(f.spin[b]) : std::hypot(f.vx[b], f.vy[b]));
   }
   if (values.empty()) return 1;
-  const auto at = values.begin() + static_cast<std::ptrdiff_t>(values.size() * 99 / 100);
-  std::nth_element(values.begin(), at, values.end());
-  return std::max(*at, 1e-3);
+  return std::max(quantile_of(std::move(values), 0.99), 1e-3);
 }
 
 // HDF5's signature: a run file, even one cut short, is to be refused as a run file and not as a film.

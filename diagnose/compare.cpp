@@ -9,6 +9,7 @@
 
 #include "core/angle.h"
 #include "core/motion_quantities.h"
+#include "core/quantile.h"
 #include "diagnose/chance.h"
 #include "diagnose/sampled.h"
 
@@ -135,8 +136,7 @@ double fast(const Field& field) {
   std::vector<double> speeds;
   for (std::size_t k = 0; k < field.vx.size(); ++k)
     if (field.occupancy[k] > 0.02 && !std::isnan(field.vx[k])) speeds.push_back(std::hypot(field.vx[k], field.vy[k]));
-  std::sort(speeds.begin(), speeds.end());
-  return speeds.empty() ? 0 : speeds[speeds.size() * 9 / 10];
+  return speeds.empty() ? 0 : quantile_of(std::move(speeds), 0.9);
 }
 
 // A film that is too slow for its balls tells so by the other source, for its own velocities are those of slow balls.
@@ -146,8 +146,8 @@ void note_slow_film(Deviation& d, const ChargeMotion& m, const ChargeMotion& oth
   for (const TrackPoint& p : m.tracks.read(0, std::min<std::size_t>(m.tracks.size(), 2000)))
     if (!std::isnan(p.radius)) radii.push_back(p.radius);
   if (radii.empty()) return;
-  std::nth_element(radii.begin(), radii.begin() + static_cast<std::ptrdiff_t>(radii.size() / 2), radii.end());
-  const double far = std::max(fast(m.field), fast(other.field)) / m.frames_per_second / (2 * radii[radii.size() / 2]);
+  const double far =
+      std::max(fast(m.field), fast(other.field)) / m.frames_per_second / (2 * median_of(std::move(radii)));
   if (far > 0.9)
     d.caveats.push_back(fmt::format(
         "{}: the faster balls go {:.1f} of their diameters from picture to picture, too far to be followed well. "

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "core/angle.h"
+#include "core/quantile.h"
 
 namespace tumble::diagnose {
 namespace {
@@ -50,9 +51,7 @@ std::string most_of(const SampledDifference& d, const ChargeMotion& a, const Cha
   for (const double o : a.field.occupancy)
     if (o > kLeastCovered) covered.push_back(o);
   if (covered.empty()) return "";
-  std::nth_element(covered.begin(), covered.begin() + static_cast<std::ptrdiff_t>(covered.size() * 9 / 10),
-                   covered.end());
-  const double bulk = covered[covered.size() * 9 / 10], bed = common_bed_deg(a, b);
+  const double bulk = quantile_of(std::move(covered), 0.9), bed = common_bed_deg(a, b);
   std::map<std::string, int> count;
   for (std::size_t k = 0; k < d.z.size(); ++k) {
     if (!d.significant[k]) continue;

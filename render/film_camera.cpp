@@ -8,6 +8,7 @@
 #include <string>
 
 #include "core/error.h"
+#include "core/quantile.h"
 #include "core/random.h"
 #include "core/units.h"
 #include "render/film_crowd.h"
@@ -324,10 +325,9 @@ int FilmCamera::Impl::sub_exposures(const std::vector<SeenBall>& seen, const Fil
   std::vector<double> streaks{0};
   for (const SeenBall& s : seen)
     streaks.push_back(std::hypot(s.state.vx, s.state.vy) / scene.radius[s.ball] * s.radius_px * look.timing.exposure);
-  const auto fast = streaks.begin() + static_cast<std::ptrdiff_t>(0.97 * static_cast<double>(streaks.size() - 1));
-  std::nth_element(streaks.begin(), fast, streaks.end());
+  const double fast = quantile_of(std::move(streaks), 0.97);
   const double rim = std::abs(moment.mill_speed) * look.timing.exposure * place_in_picture().radius;
-  return std::clamp(static_cast<int>(std::max(*fast, 0.5 * rim) / 1.5) + 1, 4, 20);
+  return std::clamp(static_cast<int>(std::max(fast, 0.5 * rim) / 1.5) + 1, 4, 20);
 }
 
 void FilmCamera::Impl::shoot(const FilmMoment& moment, int count, std::vector<float>& hits) {

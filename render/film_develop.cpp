@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "core/quantile.h"
 #include "core/units.h"
 #include "render/film_sheets.h"
 
@@ -168,9 +169,7 @@ float exposure_gain(const Sheet& light, const FilmLook& look, const Spot& centre
         inside.push_back(0.2126f * p[0] + 0.7152f * p[1] + 0.0722f * p[2]);
       }
   if (inside.empty()) return 1;
-  const auto bright = inside.begin() + static_cast<std::ptrdiff_t>(0.95 * static_cast<double>(inside.size()));
-  std::nth_element(inside.begin(), bright, inside.end());
-  return static_cast<float>(look.sensor.level) / std::max(*bright, 1e-4f);
+  return static_cast<float>(look.sensor.level) / std::max(quantile_of(std::move(inside), 0.95), 1e-4f);
 }
 
 double glare_at(const StillSheets& still, double u, double v) {

@@ -5,17 +5,12 @@
 #include <iterator>
 
 #include "core/config.h"
+#include "core/quantile.h"
 #include "core/units.h"
 #include "render/axis.h"
 
 namespace tumble::render {
 namespace {
-
-double quantile(std::vector<double> values, double share) {
-  const auto k = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), values.begin() + k, values.end());
-  return values[static_cast<std::size_t>(k)];
-}
 
 TextStyle axis_text(const Canvas& canvas, Align align) {
   return {canvas.letter(12), ink::kQuiet, Weight::kRegular, align};
@@ -69,8 +64,8 @@ TorquePlot make_torque_plot(Canvas& canvas, const Box& area, const TorqueTrace& 
   std::copy_if(trace.torque().begin(), trace.torque().end(), std::back_inserter(known),
                [](double value) { return !std::isnan(value); });
   // Single collisions would squash the curve: the scale holds zero, the curve and all but the wildest samples.
-  plot.low = std::min(0.0, quantile(known, 0.05));
-  plot.high = std::max(0.0, quantile(known, 0.95));
+  plot.low = std::min(0.0, quantile_of(known, 0.05));
+  plot.high = std::max(0.0, quantile_of(known, 0.95));
   for (const double time : trace.time()) {
     plot.low = std::min(plot.low, trace.running(time));
     plot.high = std::max(plot.high, trace.running(time));

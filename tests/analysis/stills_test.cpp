@@ -12,6 +12,7 @@
 #include "analysis/still_edges.h"
 #include "analysis/still_view.h"
 #include "core/angle.h"
+#include "core/quantile.h"
 #include "core/random.h"
 #include "core/statistics.h"
 #include "tests/analysis/painted_mill.h"
@@ -79,8 +80,7 @@ TEST(StillEdges, ErrorsAreWhatOtherPicturesOfTheSameChargeScatterBy) {
   ASSERT_GT(all, 80);
   EXPECT_GT(within, 0.45 * all);  // 0.68 by right; a tenth of these beds fall apart and have no toe
   EXPECT_LT(within, 0.85 * all);
-  std::nth_element(errors.begin(), errors.begin() + all / 2, errors.end());
-  EXPECT_NEAR(errors[static_cast<std::size_t>(all / 2)], 2, 1);            // half a ball
+  EXPECT_NEAR(median_of(errors), 2, 1);                                    // half a ball
   EXPECT_LT(edges_of_still(ragged_ring(1, 1), 15, 4).toe[kHalf].se, 0.1);  // an even bed
 }
 

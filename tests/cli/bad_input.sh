@@ -160,7 +160,7 @@ refused 1 'interrupted.*--resume' stopped.h5 ./interrupted_after 2.5 stopped.h5.
 "$tumble" simulate "${long[@]}" -o stopped.h5 --resume || fail "resume after Ctrl-C"
 "$tumble" simulate "${long[@]}" -o whole.h5
 cmp -s stopped.h5 whole.h5 || fail "a resumed run differs from an undisturbed one"
-refused 1 'interrupted' film.mp4 timeout --preserve-status -s INT 1 "$tumble" render whole.h5 -o film.mp4 --slow 20 --quiet
+refused 1 'interrupted' film.mp4 ./interrupted_after 0.3 film.mp4.part "$tumble" render whole.h5 -o film.mp4 --slow 20 --quiet
 [ ! -e film.mp4.part ] || fail "Ctrl-C left film.mp4.part"
 
 # --- a closed pipe
