@@ -26,6 +26,17 @@ struct PaintedMill {
   double noise = 2;                              // standard deviation [grey levels]
 };
 
+// Off the middle of a larger picture.
+inline PaintedMill large_painted_mill() {
+  PaintedMill mill;
+  mill.width = 640;
+  mill.height = 480;
+  mill.u = 330;
+  mill.v = 236;
+  mill.radius = 190;
+  return mill;
+}
+
 inline cv::Vec3d painted_point(const PaintedMill& m, const std::vector<PaintedBall>& balls, double u, double v) {
   for (const PaintedBall& b : balls) {
     const double x = (u - b.u) / b.radius, y = -(v - b.v) / b.radius, r2 = x * x + y * y;

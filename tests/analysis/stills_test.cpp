@@ -96,12 +96,7 @@ ChargeMotion motion_of(const cv::Mat& picture, const Config& known) {
 }
 
 cv::Mat painted_bed() {
-  PaintedMill mill;
-  mill.width = 640;
-  mill.height = 480;
-  mill.u = 330;
-  mill.v = 236;
-  mill.radius = 190;
+  const PaintedMill mill = large_painted_mill();
   return paint(mill, packed_bed(mill, 7, 35, 3), 40);
 }
 
