@@ -241,6 +241,7 @@ def compare(seed):
     if stem is None: return None
     t, balls, true = truth_of(stem)
     if not arg.same_frames: true = in_the_long_run(stem, t, true)
+    true = dict(true, k1=t['camera']['k1'])
     out = analysed(stem, seed, t['fps_recorded'])
     run = json.load(open(out + '/run.json'))
     row = {'seed': seed, 'level': t['level'], 'layers': t['mill']['layers'], 'given': run['rate_given'], 'seconds': run['seconds'], 'error': run['error']}
@@ -264,7 +265,7 @@ def compare(seed):
         if value is None or np.isnan(value): continue
         if told is None: row['values'][key] = (value, None, None); continue
         e = float(wrap(told - value)) if key.endswith('_deg') else told - value
-        row['miss'][key] = e if key.endswith('_deg') or key.endswith('v_px') or key.endswith('u_px') else e / t['mill']['radius_m'] if key.startswith('centre') or key == 'head_m' else e / value
+        row['miss'][key] = e if key.endswith(('_deg', 'u_px', 'v_px')) or key == 'k1' else e / t['mill']['radius_m'] if key.startswith('centre') or key == 'head_m' else e / value
         row['values'][key] = (value, told, se)
         if se is not None: row['z'][key] = e / se if se > 0 else (0.0 if abs(e) < 1e-9 * abs(value) else np.inf)
     return row

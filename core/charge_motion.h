@@ -88,6 +88,7 @@ struct CameraView {                // films and stills only
   double radius_px = kNotGiven;
   double metres_per_pixel = kNotGiven;
   Estimate roll_deg;
+  Estimate k1;  // radial distortion, as OpenCV has it: of the square of the distance from the middle in focal lengths
   int width_px = 0, height_px = 0;
   double centre_u_px_se = kNotGiven, centre_v_px_se = kNotGiven;  // standard errors
   double radius_px_se = kNotGiven, metres_per_pixel_se = kNotGiven;

@@ -138,6 +138,7 @@ std::string summary_json(const ChargeMotion& m) {
   put(s, "mill_radius_px", m.camera.radius_px, m.camera.radius_px_se);
   put(s, "metres_per_pixel", m.camera.metres_per_pixel, m.camera.metres_per_pixel_se);
   put(s, "roll_deg", m.camera.roll_deg.value, m.camera.roll_deg.se);
+  put(s, "k1", m.camera.k1.value, m.camera.k1.se);
   s["frames"] = m.frames;
   put(s, "frames_per_second", m.frames_per_second, m.frames_per_second_se);
   s["duplicated_frames"] = m.duplicated_frames;

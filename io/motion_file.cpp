@@ -56,6 +56,8 @@ void walk(Io& io, Motion& m) {
   io.later_scalar("camera/radius_se", "px", m.camera.radius_px_se);
   io.later_scalar("camera/metres_per_pixel_se", "m", m.camera.metres_per_pixel_se);
   io.estimate("camera/roll", "deg", m.camera.roll_deg);
+  io.later_scalar("camera/k1", "", m.camera.k1.value);
+  io.later_scalar("camera/k1_se", "", m.camera.k1.se);
   io.scalar("camera/width", "px", m.camera.width_px);
   io.scalar("camera/height", "px", m.camera.height_px);
 

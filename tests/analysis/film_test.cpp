@@ -161,7 +161,7 @@ TEST(FilmInput, NamesWhatIsWrong) {
 TEST(Stills, GiveToeAndShoulderOfAPaintedBed) {
   const fs::path folder = fs::path(::testing::TempDir()) / "stills";
   fs::create_directories(folder);
-  const PaintedMill mill = large_painted_mill();
+  PaintedMill mill = large_painted_mill();
   const double r = 7;
   std::vector<PaintedBall> balls;
   for (const PaintedBall& b : packed_bed(mill, r, 35, 3)) balls.push_back(b);

@@ -36,7 +36,7 @@ ChargeMotion a_motion(MotionSource source) {
   for (const MotionQuantity& q : kMotionQuantities) m.*q.of = {v(), v()};
   m.departure_deg = {};
   m.filling.se = kNotGiven;
-  m.camera = {v(), v(), v(), v(), {v(), v()}, 1280, 720, v(), v(), v(), v()};
+  m.camera = {v(), v(), v(), v(), {v(), v()}, {v(), v()}, 1280, 720, v(), v(), v(), v()};
   for (double& o : m.ring_occupancy) o = v();
   m.ring_occupancy[17] = kNotGiven;
   for (double& o : m.ring_occupancy_se) o = v();
@@ -61,7 +61,7 @@ std::vector<std::uint64_t> numbers_of(const ChargeMotion& m) {
   for (double x : {m.mill_radius, m.tip_radius, m.frames_per_second, m.camera.centre_u_px, m.camera.centre_v_px,
                    m.camera.radius_px, m.camera.metres_per_pixel, m.camera.roll_deg.value, m.camera.roll_deg.se,
                    m.field.cell, m.frames_per_second_se, m.camera.centre_u_px_se, m.camera.centre_v_px_se,
-                   m.camera.radius_px_se, m.camera.metres_per_pixel_se})
+                   m.camera.radius_px_se, m.camera.metres_per_pixel_se, m.camera.k1.value, m.camera.k1.se})
     add(x);
   for (const MotionQuantity& q : kMotionQuantities) add((m.*q.of).value), add((m.*q.of).se);
   for (double o : m.ring_occupancy) add(o);
@@ -164,6 +164,7 @@ TEST_F(MotionFile, SummaryNamesWhatTheContractNames) {
                                "mill_radius_px",
                                "metres_per_pixel",
                                "roll_deg",
+                               "k1",
                                "frames_per_second"}) {
     EXPECT_TRUE(s.contains(quantity)) << quantity;
     EXPECT_TRUE(s.contains(std::string(quantity) + "_se")) << quantity;
