@@ -34,6 +34,7 @@ constexpr double kUsualBall = 0.05;    // radius of a ball in shell radii, where
 constexpr double kShellShare = 0.9;    // of the shell in what turns, roughly
 constexpr double kClearTurn = 0.2;     // coherence of a ring whose turn is beyond doubt
 constexpr double kRing = 0.7;          // of a disc's radius: from there on it is unrolled first
+constexpr double kSameTurn = 0.2;      // by which the turn of two parts of one drum may be told apart
 constexpr double kClearlyWider = 1.2;  // times by which another disc is larger
 constexpr double kFrontShare = 0.7;    // of the rim's radius, outside of which marks are in the plane of the glass
 constexpr double kRoughTurn = 0.02;    // by which first angles may be off [rad]
@@ -450,18 +451,18 @@ DrumView calibrate_drum(const NextPicture& next, double frames_per_second, const
   TurningDisc disc = find_turning_disc(sample.mean, sample.coarse_deviation);
   if (!disc.found) return refuse("no turning drum was found in the film");
   const double expected = speed_rpm(known.mill) * 2 * kPi / 60 / sample.fps;
-  FirstView first;
+  FirstView first = first_view(sample, disc, expected);
+  // A drum that is mostly out of the picture: what is whole in it turns with it, or is none.
   if (disc.wider > kClearlyWider * disc.radius) {
     TurningDisc wide = disc;
     wide.radius = disc.wider;
     wide.moving_besides = 0;
-    first = first_view(sample, wide, expected);
-    if (is_clear(first))
+    FirstView wider = first_view(sample, wide, expected);
+    if (is_clear(wider) && (!is_clear(first) || std::abs(turned(wider.turn) / turned(first.turn) - 1) < kSameTurn)) {
       disc = wide;
-    else
-      first = {};
+      first = std::move(wider);
+    }
   }
-  if (!first.turn.found) first = first_view(sample, disc, expected);
   DrumTurn& turn = first.turn;
   const DrumPose& start = first.pose;
   PolarGrid& grid = first.grid;
