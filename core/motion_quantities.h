@@ -1,5 +1,6 @@
 #pragma once
 #include <array>
+#include <string>
 
 #include "core/charge_motion.h"
 
@@ -43,5 +44,12 @@ inline constexpr std::array kMotionQuantities{
     MotionQuantity{"torque_N_m", "Torque of one slice", "N m", "N m", &ChargeMotion::torque},
     MotionQuantity{"torque_closure_N_m", "Torque by the charge’s weight", "N m", "N m", &ChargeMotion::torque_closure},
 };
+
+// What people call a quantity of summary.json; its name where it is none.
+inline std::string words_for(const std::string& name) {
+  for (const MotionQuantity& q : kMotionQuantities)
+    if (name == q.name) return q.words;
+  return name;
+}
 
 }  // namespace tumble

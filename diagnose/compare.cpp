@@ -196,12 +196,6 @@ std::string lower_first(std::string text) {
   return text;
 }
 
-const char* words_for(const std::string& name) {
-  for (const MotionQuantity& q : kMotionQuantities)
-    if (name == q.name) return q.words;
-  return name.c_str();
-}
-
 // The most certain differences first, one of each kin.
 std::string quantities_in_words(const std::vector<Difference>& differences) {
   std::vector<const Difference*> named;

@@ -26,12 +26,6 @@ namespace {
 constexpr double kPathDots = 0.1;  // [s] between the dots along a path
 constexpr int kGold = 5;           // of the plots' palette: what is beyond chance
 
-std::string words_for(const std::string& name) {
-  for (const MotionQuantity& q : kMotionQuantities)
-    if (name == q.name) return q.words;
-  return name;
-}
-
 struct Words {
   const char* name;
   const char* title;
@@ -461,28 +455,27 @@ std::string comparison_page(const Comparison& c) {
                      {"path_dots", kPathDots},
                      {"film_rate", c.film_rate},
                      {"film_slow", c.film_slow}};
-  return filled(compare_html,
-                {{"title", escaped(title_of(d) + ": " + file_name(*c.a.motion) + " and " + file_name(*c.b.motion))},
-                 {"lead", escaped(after_verdict(d.sentence))},
-                 {"sides", sides_html(c)},
-                 {"caveats", caveats_html(caveats_of(c))},
-                 {"keys", keys_html(d)},
-                 {"a_picture", picture(c.a, *c.b.motion, "Mean charge of A")},
-                 {"b_picture", picture(c.b, *c.a.motion, "Mean charge of B")},
-                 {"map_caption", escaped(map_caption(d))},
-                 {"films", films_html(c)},
-                 {"sections", sections},
-                 {"paths_hidden", c.a.paths.empty() && c.b.paths.empty() ? " hidden" : ""},
-                 {"path_dots", fmt::format("{:g} s", kPathDots)},
-                 {"rows", rows_html(d)},
-                 {"facts", facts_html(c)},
-                 {"footer", footer_html(c.version)},
-                 {"data", script_json(data)},
-                 {"uplot_css", std::string(uplot_css)},
-                 {"style", std::string(style_css)},
-                 {"uplot_js", std::string(uplot_js)},
-                 {"plots_js", std::string(plots_js)},
-                 {"script", std::string(compare_js)}});
+  const std::string title = title_of(d) + ": " + file_name(*c.a.motion) + " and " + file_name(*c.b.motion);
+  return filled(compare_html, {{"head", head_html(title, "; media-src data: blob:")},
+                               {"title", escaped(title)},
+                               {"lead", escaped(after_verdict(d.sentence))},
+                               {"sides", sides_html(c)},
+                               {"caveats", caveats_html(caveats_of(c))},
+                               {"keys", keys_html(d)},
+                               {"a_picture", picture(c.a, *c.b.motion, "Mean charge of A")},
+                               {"b_picture", picture(c.b, *c.a.motion, "Mean charge of B")},
+                               {"map_caption", escaped(map_caption(d))},
+                               {"films", films_html(c)},
+                               {"sections", sections},
+                               {"paths_hidden", c.a.paths.empty() && c.b.paths.empty() ? " hidden" : ""},
+                               {"path_dots", fmt::format("{:g} s", kPathDots)},
+                               {"rows", rows_html(d)},
+                               {"facts", facts_html(c)},
+                               {"footer", footer_html(c.version)},
+                               {"data", script_json(data)},
+                               {"uplot_js", std::string(uplot_js)},
+                               {"plots_js", std::string(plots_js)},
+                               {"script", std::string(compare_js)}});
 }
 
 }  // namespace tumble::io

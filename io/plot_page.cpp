@@ -20,14 +20,13 @@ void write_plot_page(const std::filesystem::path& path, const PlotPage& page) {
     for (Json& plot : plots_json(page.sections[i].plots, id)) plots.push_back(std::move(plot));
   }
   write_text(path, filled(plots_html, {{"kind", escaped(page.kind)},
+                                       {"head", head_html(page.title)},
                                        {"title", escaped(page.title)},
                                        {"lead", escaped(page.lead)},
                                        {"caveats", caveats_html(page.caveats)},
                                        {"sections", sections},
                                        {"footer", footer_html(page.version)},
                                        {"data", script_json({{"plots", plots}})},
-                                       {"uplot_css", std::string(uplot_css)},
-                                       {"style", std::string(style_css)},
                                        {"uplot_js", std::string(uplot_js)},
                                        {"plots_js", std::string(plots_js)}}));
 }

@@ -32,12 +32,6 @@ namespace {
 
 constexpr std::uintmax_t kLargestEmbedded = 64u << 20;  // [bytes]; a larger film stays beside the report
 
-std::string words_for(const std::string& name) {
-  for (const MotionQuantity& q : kMotionQuantities)
-    if (name == q.name) return q.words;
-  return escaped(name);
-}
-
 const char* adjective(LifterProfile profile) {
   switch (profile) {
     case LifterProfile::kRectangle:
@@ -169,8 +163,8 @@ std::string rows_of(const Deviation& deviation) {
     // What has no error of its own takes the digits of the difference, so that the two can be compared by eye.
     const auto shown = [&](const Estimate& e) { return e.se > 0 ? with_error(e) : number(e.value, d.se); };
     rows += fmt::format("<tr{}><th scope=\"row\">{}</th><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td></tr>",
-                        std::abs(d.z) > 3 ? " class=\"far\"" : "", words_for(d.name), escaped(d.unit), shown(d.a),
-                        shown(d.b), with_error({d.difference, d.se}), number(d.z, 1));
+                        std::abs(d.z) > 3 ? " class=\"far\"" : "", escaped(words_for(d.name)), escaped(d.unit),
+                        shown(d.a), shown(d.b), with_error({d.difference, d.se}), number(d.z, 1));
   }
   return rows;
 }
@@ -289,10 +283,8 @@ void write_run_report(const fs::path& path, const RunReport& r) {
   write_text(
       path,
       filled(run_html,
-             {{"title", escaped(title)},
-              {"media_source", film.media_source},
-              {"uplot_css", std::string(uplot_css)},
-              {"style", std::string(style_css)},
+             {{"head", head_html(title, "; media-src data: blob: " + film.media_source)},
+              {"title", escaped(title)},
               {"lead", escaped(lead_of(r))},
               {"caveats", caveats_of(r)},
               {"keys", keys_of(r)},

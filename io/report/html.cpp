@@ -7,6 +7,8 @@
 #include <set>
 #include <stdexcept>
 
+#include "io/report/embedded.h"
+
 namespace tumble::io::report {
 namespace {
 
@@ -63,6 +65,13 @@ std::string script_json(const Json& json) {
       out += c;
   }
   return out;
+}
+
+std::string head_html(const std::string& title, const std::string& media) {
+  return filled(head_html_page, {{"title", escaped(title)},
+                                 {"media", media},
+                                 {"uplot_css", std::string(uplot_css)},
+                                 {"style", std::string(style_css)}});
 }
 
 std::string caveats_html(const std::vector<std::string>& caveats) {

@@ -18,6 +18,9 @@ std::string escaped(const std::string& text);
 // JSON that can stand inside <script>: ASCII, and no "<", so nothing in it ends the element.
 std::string script_json(const Json& json);
 
+// What stands in a page's <head>: policy, title, styles. `media`: the policy's word on films, "" for none at all.
+std::string head_html(const std::string& title, const std::string& media = "");
+
 // What a reader must know first, as a box above the numbers; nothing where there is nothing. And the page's last line.
 std::string caveats_html(const std::vector<std::string>& caveats);
 std::string footer_html(const std::string& version);
