@@ -181,6 +181,7 @@ struct FirstView {
   DrumPose pose;
   PolarGrid grid;
   bool even = false;           // it turns as a drum does
+  bool by_ring = false;        // told by the ring at the shell alone
   bool ring_misleads = false;  // the ring at the shell does not
 };
 
@@ -199,7 +200,7 @@ FirstView first_view(const Sample& sample, const TurningDisc& disc, double expec
       if (even != view.even ? !even : seen.coherence <= view.turn.coherence) continue;
       if (inner < kRing && !even && ring_is_clear)
         continue;  // neither is the drum: what is next to the shell is nearer
-      view = {std::move(seen), pose, grid, even, inner < kRing && ring_is_clear};
+      view = {std::move(seen), pose, grid, even, inner == kRing, inner < kRing && ring_is_clear};
     }
     if (is_clear(view)) break;
   }
@@ -452,13 +453,14 @@ DrumView calibrate_drum(const NextPicture& next, double frames_per_second, const
   if (!disc.found) return refuse("no turning drum was found in the film");
   const double expected = speed_rpm(known.mill) * 2 * kPi / 60 / sample.fps;
   FirstView first = first_view(sample, disc, expected);
-  // A drum that is mostly out of the picture: what is whole in it turns with it, or is none.
+  // A drum that is mostly out of the picture: what is whole in it turns with what is round it, or is none.
   if (disc.wider > kClearlyWider * disc.radius) {
     TurningDisc wide = disc;
     wide.radius = disc.wider;
     wide.moving_besides = 0;
     FirstView wider = first_view(sample, wide, expected);
-    if (is_clear(wider) && (!is_clear(first) || std::abs(turned(wider.turn) / turned(first.turn) - 1) < kSameTurn)) {
+    const bool turns_with_it = wider.by_ring && std::abs(turned(wider.turn) / turned(first.turn) - 1) < kSameTurn;
+    if (is_clear(wider) && (turns_with_it || !is_clear(first))) {
       disc = wide;
       first = std::move(wider);
     }

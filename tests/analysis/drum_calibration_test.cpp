@@ -213,6 +213,26 @@ TEST(DrumCalibration, ADrumMostlyOutsideOfThePictureIsFound) {
   }
 }
 
+// A chart that scrolls beside the drum: a wide circle about the drum's axis moves wherever it is in view, and evenly.
+TEST(DrumCalibration, WhatMovesBesideADrumIsNotTheDrum) {
+  PaintedDrum drum = seen_from(0, 0);
+  drum.camera = camera_for(kPicture, 700, 0, 0, 0.45 * kPicture.height, drum.rim, {175, 180}, 0);
+  Film film = film_of(drum, std::vector<int>(60, 1));
+  Random random(7);
+  cv::Mat coarse(40, 16, CV_8U), chart;
+  for (int i = 0; i < 40 * 16; ++i) coarse.at<uchar>(i / 16, i % 16) = static_cast<uchar>(random.uniform(30, 220));
+  cv::resize(coarse, chart, {280, 700}, 0, 0, cv::INTER_CUBIC);
+  cv::cvtColor(chart, chart, cv::COLOR_GRAY2BGR);
+  for (std::size_t t = 0; t < film.pictures.size(); ++t)
+    chart.rowRange(static_cast<int>(t), static_cast<int>(t) + kPicture.height)
+        .copyTo(film.pictures[t].colRange(360, 640));
+  const DrumView view = calibrated(film);
+  ASSERT_TRUE(view.found);
+  EXPECT_NEAR(view.turn_per_frame.value, drum.step, 5e-4 * drum.step);
+  EXPECT_NEAR(view.centre_u.value, 175, 0.5);
+  EXPECT_NEAR(view.centre_v.value, 180, 0.5);
+}
+
 TEST(DrumCalibration, AStillMillIsRefusedWithAReason) {
   const Film film = film_of(seen_from(0, 0), std::vector<int>(20, 0));
   const DrumView view = calibrated(film);
