@@ -236,17 +236,19 @@ const tumblePlots = (() => {
     };
     const columns = aligned(spec.series), first = columns[0][0], last = columns[0].at(-1);
     const value = (u, v) => v == null ? "–" : in_words(v, 5);
+    const directed = (u, v) => value(u, v == null ? v : degree(v));
+    const read = spec.y_direction ? directed : value;
     return plot(spec.id, {
       scales: {
         x: { time: false, distr: spec.x_log ? 3 : 1, range: (u, low, high) => window(low, high) },
         y: { distr: spec.y_log ? 3 : 1, range: u => range_of(spec.y_log, heights(u)) },
       },
-      axes: [axis(spec.x_label, Object.assign(spec.x_direction ? round : ticks(spec.x_log), { space: 60 })), axis(spec.y_label, Object.assign(ticks(spec.y_log), { size: wide }))],
+      axes: [axis(spec.x_label, Object.assign(spec.x_direction ? round : ticks(spec.x_log), { space: 60 })), axis(spec.y_label, Object.assign(spec.y_direction ? round : ticks(spec.y_log), { size: wide }))],
       legend: { markers: { stroke: (u, i) => `var(--${palette[spec.series[i - 1].colour % palette.length]})`, fill: () => "transparent" } },
       cursor: { y: false, points: { size: 6 }, dataIdx: nearest },
-      series: [{ label: spec.x_label, value: spec.x_direction ? (u, v) => value(u, v == null ? v : degree(v)) : value }, ...spec.series.map((s, k) => s.mark == "points"
-        ? line(s.label, stroke[k], { value, width: 0, paths: () => null, points: { show: true, size: 7, width: 1.6, stroke: stroke[k], fill: colour("paper") } })
-        : line(s.label, stroke[k], { value, spanGaps: false, dash: s.dashed ? [6, 4] : [], ...(s.mark == "steps" ? { paths: uPlot.paths.stepped({ align: 1 }) } : {}) }))],
+      series: [{ label: spec.x_label, value: spec.x_direction ? directed : value }, ...spec.series.map((s, k) => s.mark == "points"
+        ? line(s.label, stroke[k], { value: read, width: 0, paths: () => null, points: { show: true, size: 7, width: 1.6, stroke: stroke[k], fill: colour("paper") } })
+        : line(s.label, stroke[k], { value: read, spanGaps: false, dash: s.dashed ? [6, 4] : [], ...(s.mark == "steps" ? { paths: uPlot.paths.stepped({ align: 1 }) } : {}) }))],
       hooks: {
         drawClear: [...spec.upright.map(r => upright_band(r.low, r.high, soft)),
                     ...spec.level.map(r => band(r.low ?? r.at, r.high ?? r.at, soft)),
