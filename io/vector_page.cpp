@@ -156,7 +156,12 @@ void VectorPage::save() {
   for (const cairo_status_t status : {cairo_status(cairo_->context), cairo_surface_status(cairo_->surface)})
     if (status != CAIRO_STATUS_SUCCESS)
       throw WorkError(path_.string(), std::string("cannot be drawn: ") + cairo_status_to_string(status));
-  write_text(path_, cairo_->bytes);
+  // cairo counts surfaces through the whole process; a page's bytes are not to tell what was drawn before it.
+  std::string& bytes = cairo_->bytes;
+  const std::string id = "<g id=\"surface";
+  if (const auto at = bytes.find(id); path_.extension() == ".svg" && at != std::string::npos)
+    bytes.erase(at + id.size(), bytes.find('"', at + id.size()) - at - id.size());
+  write_text(path_, bytes);
 }
 
 bool VectorPage::writes(const fs::path& path) { return path.extension() == ".svg" || path.extension() == ".pdf"; }
