@@ -31,6 +31,7 @@ const std::array<std::vector<PagePoint>, 5> kMarks{{{},  // a disc
                                                     {{0, -1.25}, {1.1, 0.75}, {-1.1, 0.75}},
                                                     {{0, -1.3}, {1.3, 0}, {0, 1.3}, {-1.3, 0}},
                                                     {{0, 1.25}, {1.1, -0.75}, {-1.1, -0.75}}}};
+const std::array<std::vector<double>, 4> kDashes{{{1.8, 1.0}, {2.6, 0.8}, {0.7, 0.7}, {2.2, 0.7, 0.6, 0.7}}};
 
 struct Axis {
   double low = 0, high = 1, step = 1;
@@ -133,7 +134,8 @@ Axis axis_upright(const Plot& plot) {
 const Ink& ink_of(const PlotSeries& s) { return kInks[static_cast<std::size_t>(s.colour) % kInks.size()]; }
 
 Pen pen_of(const PlotSeries& s) {
-  return {ink_of(s), s.dashed ? 0.3 : 0.35, s.dashed ? std::vector<double>{1.8, 1.0} : std::vector<double>{}};
+  if (!s.dashed) return {ink_of(s), 0.35};
+  return {ink_of(s), 0.3, kDashes[static_cast<std::size_t>(s.colour) % kDashes.size()]};
 }
 
 // Full on a line, hollow where the points stand alone.
@@ -162,7 +164,7 @@ struct Legend {
   double height = 0;
 };
 
-// In one row if they fit, else in columns of equal width.
+// In one row if they fit, else down columns of equal width.
 Legend legend_of(const VectorPage& page, const std::vector<Plot>& panels, double left, double width) {
   constexpr double kGap = 4;
   Legend legend;
@@ -180,13 +182,13 @@ Legend legend_of(const VectorPage& page, const std::vector<Plot>& panels, double
   const double widest = *std::max_element(widths.begin(), widths.end());
   const std::size_t columns =
       one_row ? widths.size() : static_cast<std::size_t>(std::max(1.0, std::floor((width + kGap) / widest)));
-  double x = 0;
+  const std::size_t rows = (widths.size() + columns - 1) / columns;
+  double x = left;
   for (std::size_t i = 0; i < widths.size(); ++i) {
-    if (i % columns == 0) x = left, legend.height += kRow;
-    legend.names[i].at = {x, legend.height - 0.5 * kRow};
-    x += one_row ? widths[i] : widest;
+    legend.names[i].at = {x, (static_cast<double>(i % rows) + 0.5) * kRow};
+    if ((i + 1) % rows == 0) x += one_row ? widths[i] : widest;
   }
-  legend.height += 1;
+  legend.height = static_cast<double>(rows) * kRow + 1;
   return legend;
 }
 

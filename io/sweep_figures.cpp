@@ -187,8 +187,10 @@ PlotSeries morrell(const Sweep& sweep, const Config& mill, const Line& line, std
   for (const std::string& place : places) {
     sets[0] = varied.key + "=" + place;
     const Config c = with_sets(mill, sets);
+    // As it is given: a filling of whole balls would go up in steps.
+    const double filling = std::isnan(c.charge.filling) ? number_at(c, "charge.filling") : c.charge.filling;
     s.x.push_back(number_of(place));
-    s.y.push_back(morrell_toe_and_shoulder(number_at(c, "charge.filling"), number_at(c, "mill.speed")).*angle);
+    s.y.push_back(morrell_toe_and_shoulder(filling, speed_fraction(c.mill)).*angle);
   }
   return s;
 }
