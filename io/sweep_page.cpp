@@ -47,7 +47,7 @@ PlotPage sweep_page(const Sweep& sweep, const Config& mill, const Experiments& m
   std::string keys;
   for (const VariedKey& v : sweep.varied) keys += (keys.empty() ? "" : " and ") + v.key;
   page.title = fmt::format("{} runs over {}", sweep.runs.size(), keys);
-  page.lead = fmt::format("{} points with {} run{} each. Bars are one standard error.", sweep.points(), sweep.repeats,
+  page.lead = fmt::format("{} points with {} run{} each. Bands are one standard error.", sweep.points(), sweep.repeats,
                           sweep.repeats == 1 ? "" : "s");
   std::size_t failed = 0, unsteady = 0, locked = 0;
   for (const RunOutcome& run : sweep.runs) {

@@ -5,7 +5,7 @@
 namespace tumble::io::report {
 
 extern const std::string_view head_html_page, top_html, page_js;  // of all pages
-extern const std::string_view run_html;        // pages with {{places}} to fill
+extern const std::string_view run_html;                           // pages with {{places}} to fill
 extern const std::string_view plots_html;
 extern const std::string_view compare_html;
 extern const std::string_view compare_js;
