@@ -10,29 +10,44 @@
 #include <memory>
 #include <vector>
 
+#include "cli/picture_output.h"
 #include "cli/run_player.h"
-#include "core/angle.h"
 #include "core/error.h"
 #include "core/parallel_for.h"
 #include "core/quantile.h"
-#include "io/image_file.h"
-#include "io/output.h"
+#include "io/drawing_file.h"
 #include "io/tracks_file.h"
+#include "render/sheet.h"
 
 namespace tumble::cli {
 namespace {
 
-// Top of the colour scale: what one ball in a hundred exceeds, so that a single impact does not darken the film.
-double scale_top(const io::RunReader& run, render::Colour colour) {
+struct Range {
+  double low = 0, high = 0;
+};
+
+// The colour scale of all runs: up to what one ball in a hundred exceeds, so that a single impact does not darken the
+// film.
+Range scale_of(const std::vector<Shot>& shots, render::Colour colour) {
   std::vector<double> values;
-  const std::size_t step = std::max<std::size_t>(1, run.frame_count() / 50);
-  for (std::size_t i = 0; i < run.frame_count(); i += step) {
-    const Frame f = run.frame(i);
-    for (std::size_t b = 0; b < f.x.size(); ++b)
-      values.push_back(colour == render::Colour::kSpin ? std::abs(f.spin[b]) : std::hypot(f.vx[b], f.vy[b]));
+  for (const Shot& shot : shots) {
+    const io::RunReader& run = *shot.run;
+    const std::vector<double>& radii = run.setup().balls.radius;
+    if (colour == render::Colour::kSize) values.insert(values.end(), radii.begin(), radii.end());
+    if (colour == render::Colour::kSize || colour == render::Colour::kSteel) continue;
+    const std::size_t step = std::max<std::size_t>(1, run.frame_count() / 50);
+    for (std::size_t i = 0; i < run.frame_count(); i += step) {
+      const Frame f = run.frame(i);
+      for (std::size_t b = 0; b < f.x.size(); ++b)
+        values.push_back(colour == render::Colour::kSpin ? std::abs(f.spin[b]) : std::hypot(f.vx[b], f.vy[b]));
+    }
   }
-  if (values.empty()) return 1;
-  return std::max(quantile_of(std::move(values), 0.99), 1e-3);
+  if (values.empty()) return {0, 1};
+  if (colour == render::Colour::kSize) {
+    const auto [least, most] = std::minmax_element(values.begin(), values.end());
+    return {*least, *most};
+  }
+  return {0, std::max(quantile_of(std::move(values), 0.99), 1e-3)};
 }
 
 // HDF5's signature: a run file, even one cut short, is to be refused as a run file and not as a film.
@@ -42,14 +57,43 @@ bool looks_like_hdf5(const fs::path& path) {
   return file.read(head, sizeof head) && std::memcmp(head, "\x89HDF\r\n\x1a\n", sizeof head) == 0;
 }
 
-struct Marks {
-  double toe_deg = kNotGiven, shoulder_deg = kNotGiven;
+// The marks of one run at its frame, and its torque.
+render::Moment moment_of(const Shot& shot, const Frame& frame) {
+  render::Moment moment;
+  moment.torque_time = shot.run->time();
+  moment.torque = shot.run->torque();
+  const double rate = shot.run->setup().config.run.frames_per_second;
+  const auto i = static_cast<std::size_t>(std::lround((frame.time - shot.run->time().front()) * rate));
+  if (!shot.truth || i >= shot.truth->profile.size()) return moment;
+  moment.toe_deg = shot.truth->profile[i].toe_deg;
+  moment.shoulder_deg = shot.truth->profile[i].shoulder_deg;
+  return moment;
+}
+
+// Runs played in step.
+class Players {
+ public:
+  explicit Players(const std::vector<Shot>& shots) : shots_(shots) {
+    for (const Shot& shot : shots) players_.emplace_back(*shot.run);
+  }
+  std::vector<Frame> at(double time) {  // after their beginnings
+    std::vector<Frame> frames;
+    for (std::size_t c = 0; c < shots_.size(); ++c) frames.push_back(players_[c].at(shots_[c].begin + time));
+    return frames;
+  }
+
+ private:
+  const std::vector<Shot>& shots_;
+  std::vector<RunPlayer> players_;
 };
 
-Marks marks_at(const ChargeMotion& truth, double time, double frames_per_second) {
-  const auto i = static_cast<std::size_t>(std::lround(time * frames_per_second));
-  if (i >= truth.profile.size()) return {};
-  return {truth.profile[i].toe_deg, truth.profile[i].shoulder_deg};
+void check_view(const std::vector<Shot>& shots, const render::View& view) {
+  if (view.from != render::View::From::kBall) return;
+  for (const Shot& shot : shots) {
+    const std::size_t balls = shot.run->setup().balls.size();
+    if (view.ball >= balls)
+      throw InputError("--camera", fmt::format("follows ball {}, but there are balls 0 to {}", view.ball, balls - 1));
+  }
 }
 
 }  // namespace
@@ -67,71 +111,95 @@ ChargeMotion measure_run(const io::RunReader& run, const CommonOptions& options)
       line.callback());
 }
 
-std::string picture_name(std::size_t index) { return fmt::format("frame_{:06}.png", index); }
+std::size_t render_shots(const std::vector<Shot>& shots, const FilmPlan& plan, const fs::path& output,
+                         const CommonOptions& options) {
+  check_view(shots, plan.style.view);
+  const Timeline timeline = timeline_of(shots, plan);
+  const Range scale = scale_of(shots, plan.style.colour);
+  std::vector<render::SheetMill> mills;
+  for (const Shot& shot : shots) mills.push_back({shot.run->setup(), shot.label});
+  const auto new_sheet = [&] {
+    auto sheet = std::make_unique<render::Sheet>(mills, plan.style);
+    sheet->set_scale(scale.low, scale.high);
+    return sheet;
+  };
 
-std::size_t render_run(const io::RunReader& run, const ChargeMotion& truth, const FilmPlan& plan,
-                       const fs::path& output, bool as_pictures, const CommonOptions& options) {
-  if (run.frame_count() == 0) throw InputError(truth.origin, "holds no frames; simulate for longer");
-  const double film_rate = double(plan.format.fps_numerator) / plan.format.fps_denominator;
-  const double start = run.time().front() + plan.from;
-  double span = run.time().back() - start;
-  if (!std::isnan(plan.seconds)) span = std::min(span, plan.seconds);
-  const double step = 1 / (film_rate * plan.style.slow);
-  const auto count = static_cast<std::size_t>(std::floor(span / step + 1e-6)) + 1;
-  const double top = scale_top(run, plan.style.colour);
-  const double stored_rate = run.setup().config.run.frames_per_second;
-
-  // Several renderers draw a batch of frames side by side; then the batch is written in order.
-  const std::size_t workers = std::min<std::size_t>(static_cast<std::size_t>(thread_limit()), 8);
+  // Several sheets draw a batch of frames side by side; then the batch is written in order.
   constexpr std::size_t kEach = 4;
-  std::vector<std::unique_ptr<render::Renderer>> renderers;
-  for (std::size_t w = 0; w < workers; ++w) {
-    renderers.push_back(std::make_unique<render::Renderer>(run.setup(), plan.style));
-    renderers.back()->set_scale(0, top);
-  }
-  std::unique_ptr<io::FilmWriter> film;
-  if (!as_pictures) film = std::make_unique<io::FilmWriter>(output.string(), plan.format);
+  const std::size_t workers = std::min<std::size_t>(
+      {static_cast<std::size_t>(thread_limit()), 8, (timeline.count + kEach - 1) / kEach});
+  std::vector<std::unique_ptr<render::Sheet>> sheets;
+  for (std::size_t w = 0; w < workers; ++w) sheets.push_back(new_sheet());
 
+  Players players(shots);
+  // Trails show a fixed stretch of true time: so many pictures before each. A still takes them as a film would.
+  const double before_step = timeline.step > 0 ? timeline.step : 1.0 / 240;
+  const std::size_t trail = plan.style.overlay.tracks
+                                ? static_cast<std::size_t>(std::ceil(sheets[0]->trail_seconds() / before_step))
+                                : 0;
+  // What lies before a picture, oldest first, as far as the runs go; by run.
+  const auto frames_before = [&](std::size_t picture) {
+    std::vector<std::vector<Frame>> past(shots.size());
+    for (std::size_t k = trail; k >= 1; --k) {
+      const double then = timeline.first + (static_cast<double>(picture) - static_cast<double>(k)) * before_step;
+      if (then < -1e-9) continue;
+      std::vector<Frame> frames = players.at(then);
+      for (std::size_t c = 0; c < shots.size(); ++c) past[c].push_back(std::move(frames[c]));
+    }
+    return past;
+  };
+
+  if (output_kind(output) == OutputKind::kDrawing) {
+    const std::vector<std::vector<Frame>> past = frames_before(0);
+    const std::vector<Frame> frames = players.at(timeline.first);
+    std::vector<render::Moment> moments;
+    for (std::size_t c = 0; c < shots.size(); ++c) {
+      moments.push_back(moment_of(shots[c], frames[c]));
+      moments.back().past = past[c];
+    }
+    const Drawing drawing = sheets[0]->sketch(frames, moments, timeline.first);
+    output.extension() == ".svg" ? io::write_svg(output, drawing) : io::write_pdf(output, drawing);
+    return 1;
+  }
+
+  PictureOutput pictures(output, plan.format);
   ProgressLine line(options, "rendering", "nothing was written under " + output.string());
   const Progress progress = line.callback();
-  RunPlayer player(run);
-  // Trails show a fixed stretch of true time: so many film frames before each.
-  const std::size_t trail =
-      plan.style.overlay.tracks ? static_cast<std::size_t>(std::ceil(renderers[0]->trail_seconds() / step)) : 0;
   std::vector<Image> images(workers * kEach);
-  std::vector<Frame> frames(workers * kEach);
-  for (std::size_t from = 0; from < count; from += images.size()) {
-    report(progress, double(from) / double(count));
-    const std::size_t n = std::min(images.size(), count - from);
-    std::vector<Frame> before;  // for trails: the film frames before this batch, then the batch itself
+  std::vector<std::vector<Frame>> frames(images.size());
+  for (std::size_t from = 0; from < timeline.count; from += images.size()) {
+    report(progress, double(from) / double(timeline.count));
+    const std::size_t n = std::min(images.size(), timeline.count - from);
+    std::vector<std::vector<Frame>> past(shots.size());
+    if (trail > 0) past = frames_before(from);
+    const std::size_t lead = past[0].size();
+    for (std::size_t i = 0; i < n; ++i) frames[i] = players.at(timeline.at(from + i));
     if (trail > 0)
-      for (std::size_t k = from > trail ? from - trail : 0; k < from; ++k)
-        before.push_back(player.at(start + double(k) * step));
-    const std::size_t lead = before.size();
-    for (std::size_t i = 0; i < n; ++i) frames[i] = player.at(start + double(from + i) * step);
-    if (trail > 0) before.insert(before.end(), frames.begin(), frames.begin() + static_cast<std::ptrdiff_t>(n));
+      for (std::size_t c = 0; c < shots.size(); ++c)
+        for (std::size_t i = 0; i < n; ++i) past[c].push_back(frames[i][c]);
 
     parallel_for(workers, 1, [&](std::size_t w, std::size_t) {
+      std::vector<render::Moment> moments(shots.size());
       for (std::size_t i = w * kEach; i < std::min(n, (w + 1) * kEach); ++i) {
-        const Marks marks = marks_at(truth, frames[i].time - run.time().front(), stored_rate);
-        render::Moment moment{marks.toe_deg, marks.shoulder_deg, run.time(), run.torque(), {}};
-        if (trail > 0) {
-          const std::size_t here = lead + i, first = here > trail ? here - trail : 0;
-          moment.past = std::span<const Frame>(before).subspan(first, here - first);
+        const std::size_t here = lead + i, first = here > trail ? here - trail : 0;
+        for (std::size_t c = 0; c < shots.size(); ++c) {
+          moments[c] = moment_of(shots[c], frames[i][c]);
+          if (trail > 0) moments[c].past = std::span<const Frame>(past[c]).subspan(first, here - first);
         }
-        images[i] = renderers[w]->draw(frames[i], moment);
+        images[i] = sheets[w]->draw(frames[i], moments, timeline.at(from + i));
       }
     });
-    for (std::size_t i = 0; i < n; ++i) {
-      if (film)
-        film->write(images[i]);
-      else
-        io::write_png((output / picture_name(from + i)).string(), images[i]);
-    }
+    for (std::size_t i = 0; i < n; ++i) pictures.put(from + i, images[i]);
   }
-  if (film) film->finish();
+  pictures.finish();
   report(progress, 1);
-  return count;
+  return timeline.count;
+}
+
+std::size_t render_run(const io::RunReader& run, const ChargeMotion& truth, const FilmPlan& plan,
+                       const fs::path& output, const CommonOptions& options) {
+  if (run.frame_count() == 0) throw InputError(truth.origin, "holds no frames; simulate for longer");
+  return render_shots({{&run, &truth, "", run.time().front()}}, plan, output, options);
 }
 
 ChargeMotion measure(const fs::path& input, const analysis::TracksOptions& film, const CommonOptions& options) {

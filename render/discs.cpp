@@ -72,12 +72,15 @@ Discs::Discs(int width, int height) : pipeline_(make_pipeline(kVertex, kFragment
 }
 
 void Discs::add(const Disc& disc) {
+  if (recorder_.is_on())
+    return recorder_.add(Drawing::Ball{disc.centre, disc.radius, disc.colour, disc.mark, disc.mark_strength});
   const auto f = [](double value) { return static_cast<float>(value); };
   instances_.push_back({f(disc.centre.x()), f(disc.centre.y()), f(disc.radius), f(disc.mark.x()), f(disc.mark.y()),
                         f(disc.mark_strength), f(disc.gloss), disc.colour});
 }
 
 void Discs::flush() {
+  if (recorder_.is_on()) return recorder_.flush();
   if (instances_.empty()) return;
   glUseProgram(pipeline_.program);
   glBindVertexArray(pipeline_.vertex_array);
