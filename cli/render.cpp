@@ -226,7 +226,7 @@ void add_render(CLI::App& app) {
   verb->add_option("--look-seed", o->look_seed, "Which light and materials the film theme takes")
       ->capture_default_str();
   verb->add_option("--preset", o->preset, "x264 preset, ultrafast to veryslow [veryfast]");
-  verb->add_option("--crf", o->crf, "Quality, 0 (lossless) to 51 (.mp4) or 63 (.webm) [20; 31]");
+  verb->add_option("--crf", o->crf, "Quality, 0 (lossless) to 51 (.mp4) or 63 (.webm) [20; 36]");
   add_common(*verb, *o);
   verb->footer(
       "Examples: tumble render run.h5 -o film.mp4 --slow 4 --overlay toe,shoulder,tracks\n"

@@ -280,8 +280,8 @@ AVDictionary* FilmWriter::Impl::encoder_options() const {
   av_dict_set(&options, "crf", fmt::format("{}", format.crf).c_str(), 0);
   if (kind.coding == Coding::kVp9) {
     encoder->bit_rate = 0;  // quality alone decides
-    av_dict_set(&options, "deadline", "good", 0);
-    av_dict_set(&options, "cpu-used", "4", 0);
+    av_dict_set(&options, "deadline", "realtime", 0);
+    av_dict_set(&options, "cpu-used", "5", 0);
     return options;
   }
   av_dict_set(&options, "preset", format.preset.c_str(), 0);
@@ -344,7 +344,7 @@ FilmFormat usual_format(const std::string& path) {
     case Coding::kH264:
       break;
     case Coding::kVp9:
-      format.crf = 31;
+      format.crf = 36;  // looks as x264's 20 does
       break;
     case Coding::kGif:
       format.width = 640;

@@ -1,0 +1,88 @@
+#include "core/slow_motion.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+namespace tumble {
+namespace {
+
+constexpr double kOverlap = 0.1;  // of the smaller radius: what nobody sees
+constexpr int kPasses = 8;        // pushing one pair apart may push another together
+
+double overlap(const Frame& f, const Balls& balls, std::size_t i, std::size_t j) {
+  return balls.radius[i] + balls.radius[j] - std::hypot(f.x[i] - f.x[j], f.y[i] - f.y[j]);
+}
+
+struct Pair {
+  std::size_t i, j;
+  double allowed;  // overlap [m]
+};
+
+// Pairs whose squares meet, in a fixed order: balls in rows of cells, each against those that follow.
+std::vector<Pair> near_pairs(const Frame& f, const Balls& balls) {
+  const double cell = 2.2 * *std::max_element(balls.radius.begin(), balls.radius.end());
+  const auto [left, right] = std::minmax_element(f.x.begin(), f.x.end());
+  const auto [low, high] = std::minmax_element(f.y.begin(), f.y.end());
+  // A stray ball must not make the grid larger than the charge needs.
+  const auto cells = [&](double from, double to) {
+    return std::clamp(static_cast<std::int64_t>((to - from) / cell) + 1, std::int64_t{1}, std::int64_t{4096});
+  };
+  const std::int64_t columns = cells(*left, *right), rows = cells(*low, *high);
+  const auto column_of = [&](std::size_t i) {
+    return std::min(static_cast<std::int64_t>((f.x[i] - *left) / cell), columns - 1);
+  };
+  const auto row_of = [&](std::size_t i) {
+    return std::min(static_cast<std::int64_t>((f.y[i] - *low) / cell), rows - 1);
+  };
+  std::vector<std::size_t> first(static_cast<std::size_t>(columns * rows) + 1), members(f.x.size());
+  for (std::size_t i = 0; i < f.x.size(); ++i) ++first[static_cast<std::size_t>(row_of(i) * columns + column_of(i)) + 1];
+  for (std::size_t c = 1; c < first.size(); ++c) first[c] += first[c - 1];
+  std::vector<std::size_t> next(first.begin(), first.end() - 1);
+  for (std::size_t i = 0; i < f.x.size(); ++i)
+    members[next[static_cast<std::size_t>(row_of(i) * columns + column_of(i))]++] = i;
+
+  std::vector<Pair> pairs;
+  for (std::size_t i = 0; i < f.x.size(); ++i) {
+    for (std::int64_t row = std::max<std::int64_t>(row_of(i) - 1, 0); row <= std::min(row_of(i) + 1, rows - 1); ++row) {
+      const std::int64_t from = std::max<std::int64_t>(column_of(i) - 1, 0), to = std::min(column_of(i) + 1, columns - 1);
+      const std::size_t end = first[static_cast<std::size_t>(row * columns + to) + 1];
+      for (std::size_t k = first[static_cast<std::size_t>(row * columns + from)]; k < end; ++k) {
+        const std::size_t j = members[k];
+        const double reach = 1.2 * (balls.radius[i] + balls.radius[j]);
+        if (j > i && std::abs(f.x[i] - f.x[j]) < reach && std::abs(f.y[i] - f.y[j]) < reach) pairs.push_back({i, j, 0});
+      }
+    }
+  }
+  return pairs;
+}
+
+}  // namespace
+
+Frame slow_motion(const Frame& a, const Frame& b, const Balls& balls, double time) {
+  Frame f = between(a, b, time);
+  if (f.x.size() < 2 || f.time == a.time || f.time == b.time) return f;
+  std::vector<Pair> pairs = near_pairs(f, balls);
+  for (Pair& p : pairs)
+    p.allowed = std::max({kOverlap * std::min(balls.radius[p.i], balls.radius[p.j]), overlap(a, balls, p.i, p.j),
+                          overlap(b, balls, p.i, p.j)});
+  bool has_pushed = true;
+  for (int pass = 0; pass < kPasses && has_pushed; ++pass) {
+    has_pushed = false;
+    for (const Pair& p : pairs) {
+      const double dx = f.x[p.j] - f.x[p.i], dy = f.y[p.j] - f.y[p.i], apart = std::hypot(dx, dy);
+      const double push = balls.radius[p.i] + balls.radius[p.j] - p.allowed - apart;
+      if (!(push > 0) || apart == 0) continue;
+      has_pushed = true;
+      const double share = balls.mass[p.j] / (balls.mass[p.i] + balls.mass[p.j]);  // the lighter one gives way
+      f.x[p.i] -= push * share * dx / apart;
+      f.y[p.i] -= push * share * dy / apart;
+      f.x[p.j] += push * (1 - share) * dx / apart;
+      f.y[p.j] += push * (1 - share) * dy / apart;
+    }
+  }
+  return f;
+}
+
+}  // namespace tumble
