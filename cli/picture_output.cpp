@@ -14,8 +14,9 @@ OutputKind output_kind(const fs::path& output) {
   const fs::path extension = output.extension();
   if (extension == ".png") return OutputKind::kPicture;
   if (extension == ".svg" || extension == ".pdf") return OutputKind::kDrawing;
-  throw InputError(output.string(),
-                   "is no .mp4, .webm, .gif, .png, .svg or .pdf; give FILM.mp4, STILL.png, or FRAMES/ for a folder of PNG");
+  throw InputError(
+      output.string(),
+      "is no .mp4, .webm, .gif, .png, .svg or .pdf; give FILM.mp4, STILL.png, or FRAMES/ for a folder of PNG");
 }
 
 std::string picture_name(std::size_t index) { return fmt::format("frame_{:06}.png", index); }

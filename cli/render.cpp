@@ -74,7 +74,8 @@ render::View parse_view(const std::string& camera, const std::optional<double>& 
     view.from = From::kBall;
     view.zoom = 2.5;
   } else {
-    view.from = parse_name<From>(camera, "--camera", {{"lab", From::kLab}, {"shell", From::kShell}, {"ball:N", From::kBall}});
+    view.from =
+        parse_name<From>(camera, "--camera", {{"lab", From::kLab}, {"shell", From::kShell}, {"ball:N", From::kBall}});
     if (view.from == From::kBall) throw InputError("--camera", "needs the ball's number, such as ball:17");
   }
   if (zoom) view.zoom = *zoom;
@@ -127,14 +128,14 @@ std::size_t render_runs(const std::vector<io::RunReader>& runs, const Options& o
   std::vector<ChargeMotion> truths;
   for (std::size_t i = 0; i < runs.size(); ++i) {
     truths.push_back(o.plan.style.overlay.toe || o.plan.style.overlay.shoulder ? measure_run(runs[i], o)
-                                                                              : ChargeMotion{});
+                                                                               : ChargeMotion{});
     truths.back().origin = o.runs[i].string();
   }
   if (runs.size() == 1) return render_run(runs[0], truths[0], o.plan, o.output, o);
   const std::vector<Shot> shots = shots_side_by_side(runs, truths);
   const auto end = [](const Shot& shot) { return shot.run->time().back() - shot.begin; };
-  const auto [shortest, longest] = std::minmax_element(
-      shots.begin(), shots.end(), [&](const Shot& a, const Shot& b) { return end(a) < end(b); });
+  const auto [shortest, longest] =
+      std::minmax_element(shots.begin(), shots.end(), [&](const Shot& a, const Shot& b) { return end(a) < end(b); });
   if (!o.plan.is_still && end(*longest) > 1.01 * end(*shortest))
     say(o, fmt::format("note: the film ends with its shortest run, {}, after {:.2f} s", shortest->truth->origin,
                        end(*shortest)));
@@ -163,7 +164,8 @@ void render(Options o) {
   if (filmed) {
     if (kind == OutputKind::kDrawing) throw InputError(o.output.string(), "cannot hold a filmed mill; give a .png");
     if (o.runs.size() > 1) throw InputError("--theme", "film shows one run; leave out the others");
-    if (o.camera != "lab" || o.zoom) throw InputError("--theme", "film has a camera of its own; leave out --camera and --zoom");
+    if (o.camera != "lab" || o.zoom)
+      throw InputError("--theme", "film has a camera of its own; leave out --camera and --zoom");
     if (o.context != "osmesa") throw InputError("--theme", "film is drawn by osmesa; leave out --context");
     if (o.plan.is_still || o.every) o.plan.style.slow = 1;
   }
@@ -201,8 +203,7 @@ void add_render(CLI::App& app) {
   verb->add_option("runs", o->runs, "RUN.h5; several, up to 12, stand side by side")
       ->required()
       ->expected(1, static_cast<int>(render::kMostMills));
-  verb->add_option("-o,--output", o->output,
-                   "FILM.mp4, .webm or .gif; FRAMES/ for PNG files; STILL.png, .svg or .pdf")
+  verb->add_option("-o,--output", o->output, "FILM.mp4, .webm or .gif; FRAMES/ for PNG files; STILL.png, .svg or .pdf")
       ->required();
   verb->add_option("--size", o->size, "Picture size in pixels [1280x720; of a GIF 640x360]");
   verb->add_option("--fps", o->fps, "Film frames per second [60; of a GIF 25]");

@@ -126,17 +126,16 @@ std::size_t render_shots(const std::vector<Shot>& shots, const FilmPlan& plan, c
 
   // Several sheets draw a batch of frames side by side; then the batch is written in order.
   constexpr std::size_t kEach = 4;
-  const std::size_t workers = std::min<std::size_t>(
-      {static_cast<std::size_t>(thread_limit()), 8, (timeline.count + kEach - 1) / kEach});
+  const std::size_t workers =
+      std::min<std::size_t>({static_cast<std::size_t>(thread_limit()), 8, (timeline.count + kEach - 1) / kEach});
   std::vector<std::unique_ptr<render::Sheet>> sheets;
   for (std::size_t w = 0; w < workers; ++w) sheets.push_back(new_sheet());
 
   Players players(shots);
   // Trails show a fixed stretch of true time: so many pictures before each. A still takes them as a film would.
   const double before_step = timeline.step > 0 ? timeline.step : 1.0 / 240;
-  const std::size_t trail = plan.style.overlay.tracks
-                                ? static_cast<std::size_t>(std::ceil(sheets[0]->trail_seconds() / before_step))
-                                : 0;
+  const std::size_t trail =
+      plan.style.overlay.tracks ? static_cast<std::size_t>(std::ceil(sheets[0]->trail_seconds() / before_step)) : 0;
   // What lies before a picture, oldest first, as far as the runs go; by run.
   const auto frames_before = [&](std::size_t picture) {
     std::vector<std::vector<Frame>> past(shots.size());

@@ -37,7 +37,8 @@ std::vector<Pair> near_pairs(const Frame& f, const Balls& balls) {
     return std::min(static_cast<std::int64_t>((f.y[i] - *low) / cell), rows - 1);
   };
   std::vector<std::size_t> first(static_cast<std::size_t>(columns * rows) + 1), members(f.x.size());
-  for (std::size_t i = 0; i < f.x.size(); ++i) ++first[static_cast<std::size_t>(row_of(i) * columns + column_of(i)) + 1];
+  for (std::size_t i = 0; i < f.x.size(); ++i)
+    ++first[static_cast<std::size_t>(row_of(i) * columns + column_of(i)) + 1];
   for (std::size_t c = 1; c < first.size(); ++c) first[c] += first[c - 1];
   std::vector<std::size_t> next(first.begin(), first.end() - 1);
   for (std::size_t i = 0; i < f.x.size(); ++i)
@@ -46,7 +47,8 @@ std::vector<Pair> near_pairs(const Frame& f, const Balls& balls) {
   std::vector<Pair> pairs;
   for (std::size_t i = 0; i < f.x.size(); ++i) {
     for (std::int64_t row = std::max<std::int64_t>(row_of(i) - 1, 0); row <= std::min(row_of(i) + 1, rows - 1); ++row) {
-      const std::int64_t from = std::max<std::int64_t>(column_of(i) - 1, 0), to = std::min(column_of(i) + 1, columns - 1);
+      const std::int64_t from = std::max<std::int64_t>(column_of(i) - 1, 0),
+                         to = std::min(column_of(i) + 1, columns - 1);
       const std::size_t end = first[static_cast<std::size_t>(row * columns + to) + 1];
       for (std::size_t k = first[static_cast<std::size_t>(row * columns + from)]; k < end; ++k) {
         const std::size_t j = members[k];
@@ -73,13 +75,14 @@ Frame slow_motion(const Frame& a, const Frame& b, const Balls& balls, double tim
     for (const Pair& p : pairs) {
       const double dx = f.x[p.j] - f.x[p.i], dy = f.y[p.j] - f.y[p.i], apart = std::hypot(dx, dy);
       const double push = balls.radius[p.i] + balls.radius[p.j] - p.allowed - apart;
-      if (!(push > 0) || apart == 0) continue;
+      if (!(push > 0)) continue;
       has_pushed = true;
+      const double ux = apart > 0 ? dx / apart : 1, uy = apart > 0 ? dy / apart : 0;
       const double share = balls.mass[p.j] / (balls.mass[p.i] + balls.mass[p.j]);  // the lighter one gives way
-      f.x[p.i] -= push * share * dx / apart;
-      f.y[p.i] -= push * share * dy / apart;
-      f.x[p.j] += push * (1 - share) * dx / apart;
-      f.y[p.j] += push * (1 - share) * dy / apart;
+      f.x[p.i] -= push * share * ux;
+      f.y[p.i] -= push * share * uy;
+      f.x[p.j] += push * (1 - share) * ux;
+      f.y[p.j] += push * (1 - share) * uy;
     }
   }
   return f;

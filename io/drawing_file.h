@@ -10,8 +10,8 @@ namespace tumble::io {
 void write_svg(const std::filesystem::path& path, const Drawing& drawing);
 void write_pdf(const std::filesystem::path& path, const Drawing& drawing);
 
-// How a ball is drawn, in radii, so that both look alike: light from the upper left, a dark limb inside of the edge, and
-// a painted stripe that ends in a dot on one side.
+// How a ball is drawn, in radii, so that both look alike: light from the upper left, a dark limb inside of the edge,
+// and a painted stripe that ends in a dot on one side.
 struct BallLook {
   static constexpr double kLightX = -0.42, kLightY = -0.58;  // the brightest place; y down
   static constexpr double kDarkAt = 1.72;                    // how far from it the shade is deepest

@@ -114,8 +114,7 @@ struct Painter {
 void write_pdf(const std::filesystem::path& path, const Drawing& drawing) {
   StagedFile file(path);
   const std::unique_ptr<cairo_surface_t, decltype(&cairo_surface_destroy)> sheet(
-      cairo_pdf_surface_create(file.path().c_str(), drawing.width * kPointsPerPixel,
-                               drawing.height * kPointsPerPixel),
+      cairo_pdf_surface_create(file.path().c_str(), drawing.width * kPointsPerPixel, drawing.height * kPointsPerPixel),
       cairo_surface_destroy);
   // Not the hour of writing: the same drawing gives the same bytes.
   cairo_pdf_surface_set_metadata(sheet.get(), CAIRO_PDF_METADATA_CREATE_DATE, "1970-01-01T00:00:00Z");

@@ -144,11 +144,11 @@ double BallLook::limb(double radius_px) { return std::clamp(0.085 * radius_px, 0
 
 void write_svg(const std::filesystem::path& path, const Drawing& drawing) {
   Writer writer;
-  writer.text = fmt::format(
-      R"(<svg xmlns="http://www.w3.org/2000/svg" width="{0}" height="{1}" viewBox="0 0 {0} {1}" )"
-      R"(font-family="DejaVu Sans, Verdana, Helvetica, Arial, sans-serif">)"
-      "\n<defs>{2}</defs>\n<rect width=\"{0}\" height=\"{1}\"{3}/>\n<g transform=\"translate(.5 .5)\">\n",
-      drawing.width, drawing.height, light(), painted("fill", drawing.ground));
+  writer.text =
+      fmt::format(R"(<svg xmlns="http://www.w3.org/2000/svg" width="{0}" height="{1}" viewBox="0 0 {0} {1}" )"
+                  R"(font-family="DejaVu Sans, Verdana, Helvetica, Arial, sans-serif">)"
+                  "\n<defs>{2}</defs>\n<rect width=\"{0}\" height=\"{1}\"{3}/>\n<g transform=\"translate(.5 .5)\">\n",
+                  drawing.width, drawing.height, light(), painted("fill", drawing.ground));
   for (const Drawing::Shape& shape : drawing.shapes) std::visit(writer, shape);
   write_text(path, writer.text + "</g>\n</svg>\n");
 }

@@ -78,7 +78,8 @@ constexpr std::size_t kPalettePictures = 24;  // what a GIF's colours are chosen
 void check(const std::string& path, const FilmFormat& format) {
   const Kind& kind = known_kind_of(path);
   if (kind.coding == Coding::kGif) {  // it counts time in hundredths, and browsers show anything under two as ten
-    if (100 * format.fps_denominator % format.fps_numerator != 0 || format.fps_numerator > 50 * format.fps_denominator) {
+    if (100 * format.fps_denominator % format.fps_numerator != 0 ||
+        format.fps_numerator > 50 * format.fps_denominator) {
       throw InputError(path, fmt::format("{:g} frames per second cannot be told in a GIF, which counts hundredths of a "
                                          "second; give 50, 25, 20, 12.5, 10, 5 ...",
                                          static_cast<double>(format.fps_numerator) / format.fps_denominator));
@@ -94,7 +95,8 @@ void check(const std::string& path, const FilmFormat& format) {
                                        format.fps_numerator, format.fps_denominator));
   }
   if (!(format.crf >= 0 && format.crf <= kind.worst_crf)) {
-    throw InputError(path, fmt::format("crf {} is out of range; give 0 (lossless) to {:g}", format.crf, kind.worst_crf));
+    throw InputError(path,
+                     fmt::format("crf {} is out of range; give 0 (lossless) to {:g}", format.crf, kind.worst_crf));
   }
   if (std::find(kPresets.begin(), kPresets.end(), format.preset) == kPresets.end()) {
     throw InputError(path, fmt::format("preset '{}' is unknown; there are {}", format.preset,
@@ -225,7 +227,8 @@ void FilmWriter::Impl::open() {
 
   const AVCodec* codec = avcodec_find_encoder_by_name(kind.encoder);
   if (!codec)
-    throw WorkError(name, fmt::format("libavcodec has no {0}; install a libavcodec that was built with it", kind.encoder));
+    throw WorkError(name,
+                    fmt::format("libavcodec has no {0}; install a libavcodec that was built with it", kind.encoder));
   expect(avformat_alloc_output_context2(&muxer, nullptr, kind.muxer, file.path().c_str()), "cannot be set up");
   encoder = avcodec_alloc_context3(codec);
   stream = avformat_new_stream(muxer, nullptr);

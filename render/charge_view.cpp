@@ -68,8 +68,7 @@ void draw_trails(Canvas& canvas, const Balls& balls, const Frame& frame, std::sp
   if (recent.empty()) return;
   const std::size_t stride = (recent.size() + kTrailPoints - 1) / kTrailPoints;
   std::vector<Camera> cameras;
-  for (std::size_t k = 0; k < recent.size(); k += stride)
-    cameras.push_back(camera_then(recent[recent.size() - 1 - k]));
+  for (std::size_t k = 0; k < recent.size(); k += stride) cameras.push_back(camera_then(recent[recent.size() - 1 - k]));
   for (std::size_t i = 0; i < frame.x.size(); ++i) {
     const double widest = std::clamp(0.34 * balls.radius[i] * camera.pixels_per_metre, 0.5, canvas.px(3.2));
     Vec2 to = camera.image_from_mill(frame.x[i], frame.y[i]);

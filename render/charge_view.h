@@ -11,7 +11,7 @@ namespace tumble::render {
 // What a ball's colour stands for, and where the scale begins and ends.
 struct ColourScale {
   Colour by = Colour::kSpeed;
-  double low = 0, high = 1;  // [m/s], [rad/s] or, by size, the radii [m]
+  double low = 0, high = 1;               // [m/s], [rad/s] or, by size, the radii [m]
   void set_ends(double from, double to);  // Renderer::set_scale
   Rgba colour_of(double value) const;
   const Palette& palette() const;

@@ -65,8 +65,8 @@ void Meshes::record_polygon(std::span<const Vec2> corners, std::span<const Rgba>
   const auto mean = [n = static_cast<double>(colours.size())](double sum) {
     return static_cast<std::uint8_t>(std::lround(sum / n));
   };
-  recorder_.add(Drawing::Polygon{{corners.begin(), corners.end()}, {mean(r), mean(g), mean(b), mean(a)},
-                                 has_neighbours});
+  recorder_.add(
+      Drawing::Polygon{{corners.begin(), corners.end()}, {mean(r), mean(g), mean(b), mean(a)}, has_neighbours});
 }
 
 void Meshes::triangle(const Vec2& a, const Vec2& b, const Vec2& c, Rgba at_a, Rgba at_b, Rgba at_c) {

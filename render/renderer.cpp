@@ -61,9 +61,9 @@ struct Renderer::Impl {
         context(style.width, style.height, style.context),
         scale(first_scale(run, style)) {
     const CurrentContext current(context);
-    canvas = std::make_unique<Canvas>(style.width, style.height,
-                                      make_layout(style.width, style.height, shape, style.overlay.text, style.mirror,
-                                                  style.view.zoom));
+    canvas = std::make_unique<Canvas>(
+        style.width, style.height,
+        make_layout(style.width, style.height, shape, style.overlay.text, style.mirror, style.view.zoom));
     layout = canvas->layout;
     coming = std::make_unique<StillLayer>(style.width, style.height);
     been = std::make_unique<StillLayer>(style.width, style.height);
@@ -93,7 +93,7 @@ struct Renderer::Impl {
   TorqueTrace trace;
   std::optional<TorquePlot> plot;
   bool is_painted = false;  // the still layers, for the scale and trace above
-  Layout layout;  // the canvas' own, but for the camera of the frame
+  Layout layout;            // the canvas' own, but for the camera of the frame
   std::unique_ptr<Canvas> canvas;
   std::unique_ptr<StillLayer> coming, been;  // with the torque's curve pale, and bright
 };
