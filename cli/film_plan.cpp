@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <map>
 #include <set>
+#include <utility>
 
 #include "core/error.h"
 #include "core/mill_shape.h"
@@ -39,6 +41,7 @@ double time_of_lifter_at(const io::RunReader& run, double angle) {
 
 // MILL.toml's keys in full and their values as text.
 std::map<std::string, std::string> values_of(const Config& config) {
+  constexpr const char* kKeyLetters = "abcdefghijklmnopqrstuvwxyz_0123456789";  // no row of a list of balls
   std::map<std::string, std::string> values;
   std::string section;
   const std::string text = io::to_toml(config);
@@ -48,7 +51,8 @@ std::map<std::string, std::string> values_of(const Config& config) {
     from = end + 1;
     if (line.starts_with('[')) {
       section = line.substr(1, line.find(']') - 1) + ".";
-    } else if (const std::size_t equals = line.find(" = "); equals != std::string::npos) {
+    } else if (const std::size_t equals = line.find(" = ");
+               equals != std::string::npos && line.find_first_not_of(kKeyLetters) == equals) {
       std::string value = line.substr(equals + 3);
       std::erase(value, '"');
       values[section + line.substr(0, equals)] = value;
@@ -66,8 +70,8 @@ std::string in_words(const std::string& key, const std::string& value) {
   if (key == "mill.speed_rpm") return number + " rev/min";
   if (key == "mill.diameter") return "⌀ " + number + " m";
   if (key == "mill.lifters.count") return number + " lifters";
-  if (key == "mill.lifters.profile") return value == "none" ? "smooth shell" : value;
-  if (key == "charge.balls") return "";  // too long for a label
+  if (key == "mill.lifters.profile") return value == "none" ? "smooth shell" : value + " lifters";
+  if (key == "charge.balls" || key == "mill.critical_speed_rpm") return "";  // too long, and no cause of anything
   if (key == "charge.count") return number + " balls";
   std::string name = key.substr(key.rfind('.') + 1);
   if (key.starts_with("contact.wall.")) name = "wall " + name;
@@ -85,7 +89,14 @@ std::string in_words(const std::string& key, const std::string& value) {
 std::vector<std::string> labels_of(const std::vector<io::RunReader>& runs) {
   constexpr std::size_t kMostParts = 3;
   std::vector<std::map<std::string, std::string>> values;
-  std::set<std::string> keys;
+  // What people look for first stands first.
+  constexpr std::array kFirst{"mill.speed",    "mill.speed_rpm", "mill.lifters.profile",
+                              "mill.diameter", "charge.filling", "charge.count"};
+  const auto weightier = [&](const std::string& a, const std::string& b) {
+    const auto place = [&](const std::string& key) { return std::find(kFirst.begin(), kFirst.end(), key); };
+    return std::pair(place(a), a) < std::pair(place(b), b);
+  };
+  std::set<std::string, decltype(weightier)> keys(weightier);
   for (const io::RunReader& run : runs) {
     values.push_back(values_of(run.setup().config));
     for (const auto& [key, value] : values.back()) keys.insert(key);
@@ -132,17 +143,16 @@ Timeline timeline_of(const std::vector<Shot>& shots, const FilmPlan& plan) {
 }
 
 std::vector<Shot> shots_side_by_side(const std::vector<io::RunReader>& runs, const std::vector<ChargeMotion>& truths) {
-  std::vector<std::string> labels = labels_of(runs);
-  const std::set<std::string> different(labels.begin(), labels.end());
+  const std::vector<std::string> labels = labels_of(runs);
   std::vector<Shot> shots;
   const double angle = runs.front().frame(0).mill_angle;
   for (std::size_t i = 0; i < runs.size(); ++i) {
-    const std::string file = std::filesystem::path(truths[i].origin).stem().string();
-    if (labels[i].empty())
-      labels[i] = file;
-    else if (different.size() < labels.size())
-      labels[i] = file + ": " + labels[i];
-    shots.push_back({&runs[i], &truths[i], labels[i], time_of_lifter_at(runs[i], angle)});
+    std::string label = labels[i];
+    if (label.empty() || std::count(labels.begin(), labels.end(), label) > 1) {
+      const std::string file = std::filesystem::path(truths[i].origin).stem().string();
+      label = label.empty() ? file : file + ": " + label;
+    }
+    shots.push_back({&runs[i], &truths[i], label, time_of_lifter_at(runs[i], angle)});
   }
   return shots;
 }

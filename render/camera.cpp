@@ -58,7 +58,7 @@ Layout make_layout(int width, int height, const MillShape& shape, bool panel, bo
   layout.panel = {place(layout.panel.left, left), place(layout.panel.top, top), place(layout.panel.right, left),
                   place(layout.panel.bottom, top)};
   layout.view = layout.picture;
-  if (panel && upright) layout.view.bottom = place(726.0, top);
+  if (panel && upright) layout.view.bottom = place(716.0, top);
   if (panel && !upright) layout.view.right = place(776.0, left);
   layout.zoom = zoom;
   layout.camera.centre_u = place(centre.x(), left);

@@ -1,5 +1,7 @@
 #include "render/charge_view.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -90,6 +92,9 @@ void draw_followed(Canvas& canvas, const Balls& balls, const Frame& frame, std::
   const double inner = balls.radius[ball] * camera.pixels_per_metre + canvas.px(2);
   canvas.meshes.ring(camera.image_from_mill(frame.x[ball], frame.y[ball]), inner, inner + canvas.stroke(2.4), 0,
                      2 * kPi, ink::kAccent);
+  const Vec2 beside = camera.image_from_mill(frame.x[ball], frame.y[ball]) +
+                      Vec2(0.75 * inner + canvas.px(4), -0.75 * inner - canvas.px(4));
+  canvas.text.add(fmt::format("ball {}", ball), beside.x(), beside.y(), {canvas.letter(12.5), ink::kAccent});
 }
 
 void draw_arrow(Canvas& canvas, const Vec2& a, const Vec2& b, double width, Rgba colour) {

@@ -29,7 +29,7 @@ void draw_trails(Canvas& canvas, const Balls& balls, const Frame& frame, std::sp
 // One arrow a ball, `seconds` of its motion in the picture's frame long.
 void draw_velocities(Canvas& canvas, const Balls& balls, const Frame& frame, double seconds);
 
-// A ring round the ball that the camera follows.
+// A ring round the ball that the camera follows, and its number.
 void draw_followed(Canvas& canvas, const Balls& balls, const Frame& frame, std::size_t ball);
 
 // An arrow from `a` to `b`, outlined so that it reads on any ground; nothing where it would be a dot.

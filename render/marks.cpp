@@ -35,13 +35,15 @@ void draw_pointer(Canvas& canvas, const MillShape& shape, const char* name, doub
   canvas.meshes.line(centre + rim * out, centre + shape.radius * canvas.layout.camera.pixels_per_metre * out,
                      canvas.stroke(1.3), ink::kAccent);
 
+  const bool has_name = canvas.layout.unit >= 0.4;  // a tiny picture has room for the angle alone
   const TextStyle small{canvas.letter(12.5), with_alpha(ink::kAccent, 0.9)};
   const TextStyle large{canvas.letter(14.5), ink::kText, Weight::kBold};
   const std::string value = fmt::format("{:.0f}°", wrap_360(std::round(angle_deg)));
-  const double name_width = canvas.text.width(name, small), value_width = canvas.text.width(value, large);
+  const double name_width = has_name ? canvas.text.width(name, small) : 0,
+               value_width = canvas.text.width(value, large);
   // Name over value at the mill's sides, both in one line where there is little room: above and below it.
   const bool one_line = std::abs(out.y()) > 0.86;
-  const double gap = canvas.px(6), line = one_line ? 0 : 1.12 * small.size;
+  const double gap = has_name ? canvas.px(6) : 0, line = one_line || !has_name ? 0 : 1.12 * small.size;
   const double width = one_line ? name_width + gap + value_width : std::max(name_width, value_width);
   const double height = line + 0.8 * large.size;
   // The label's box touches the circle around the pointer from outside, and stays inside the picture.
@@ -52,7 +54,7 @@ void draw_pointer(Canvas& canvas, const MillShape& shape, const char* name, doub
   const double x = std::clamp(middle.x(), picture.left + margin + width / 2, picture.right - margin - width / 2);
   const double y = std::clamp(middle.y(), picture.top + margin + height / 2, picture.bottom - margin - height / 2);
   const double baseline = y + height / 2;
-  canvas.text.add(name, one_line ? x - width / 2 : x - name_width / 2, baseline - line, small);
+  if (has_name) canvas.text.add(name, one_line ? x - width / 2 : x - name_width / 2, baseline - line, small);
   canvas.text.add(value, one_line ? x + width / 2 - value_width : x - value_width / 2, baseline, large);
 }
 

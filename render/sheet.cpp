@@ -18,7 +18,7 @@
 namespace tumble::render {
 namespace {
 
-// In units of the layout, of which a picture is 1280 wide or 720 high.
+// In units of the layout, of which a picture is at least 900 wide and 720 high.
 constexpr double kFoot = 78, kHead = 14, kCaption = 34, kGap = 12, kMargin = 28;
 constexpr int kSmallestCell = 64;  // [px]
 
@@ -84,7 +84,7 @@ struct Sheet::Furniture {
     scale.by = style.colour;
     const CurrentContext current(context);
     Layout layout;
-    layout.unit = std::min(style.width / 1280.0, style.height / 720.0);
+    layout.unit = std::min(style.width / 900.0, style.height / 720.0);
     layout.picture = layout.view = {-0.5, -0.5, style.width - 0.5, style.height - 0.5};
     layout.zoom = style.view.zoom;
     cells = place_cells(style.width, style.height, wanted.size(), layout.unit);
@@ -103,8 +103,9 @@ struct Sheet::Furniture {
 
   void draw_still() const {
     const auto px = [this](double units) { return canvas->px(units); };
-    const TextStyle name{canvas->letter(17), ink::kText, Weight::kBold, Align::kCentre};
     for (std::size_t i = 0; i < labels.size(); ++i) {
+      TextStyle name{canvas->letter(17), ink::kText, Weight::kBold, Align::kCentre};
+      while (name.size > canvas->letter(12) && canvas->text.width(labels[i], name) > cells.edge) name.size -= 1;
       canvas->text.add(fitted(canvas->text, labels[i], name, cells.edge), cells.left(i) + cells.edge / 2.0,
                        cells.top(i) - px(8), name);
     }
@@ -112,7 +113,7 @@ struct Sheet::Furniture {
     canvas->meshes.line({px(kMargin), std::round(top - px(8))}, {style.width - px(kMargin), std::round(top - px(8))},
                         canvas->stroke(1.0), ink::kFaint);
     canvas->text.add(time_note(style.slow), px(kMargin + 118), top + px(34), {canvas->letter(13), ink::kQuiet});
-    draw_scale_bar(*canvas, {style.width * 0.36, style.height - px(30)}, radius_of(largest), kNotGiven);
+    draw_scale_bar(*canvas, {style.width * 0.33, style.height - px(30)}, radius_of(largest), kNotGiven);
     const double right = style.width - px(kMargin);
     draw_colour_scale(*canvas, right - px(440), right, top + px(21), scale, radii);
     canvas->flush();
