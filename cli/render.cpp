@@ -72,7 +72,7 @@ render::View parse_view(const std::string& camera, const std::optional<double>& 
     if (read.ec != std::errc() || read.ptr != end)
       throw InputError("--camera", "is \"" + camera + "\"; give the ball's number, such as ball:17");
     view.from = From::kBall;
-    view.zoom = 2.5;
+    view.zoom = 2;
   } else {
     view.from =
         parse_name<From>(camera, "--camera", {{"lab", From::kLab}, {"shell", From::kShell}, {"ball:N", From::kBall}});
@@ -215,7 +215,7 @@ void add_render(CLI::App& app) {
   verb->add_option("--camera", o->camera,
                    "lab; shell, which turns with it while gravity goes round; or ball:N, which follows ball N")
       ->capture_default_str();
-  verb->add_option("--zoom", o->zoom, "How many times closer [1; 2.5 with ball:N]");
+  verb->add_option("--zoom", o->zoom, "How many times closer [1; 2 with ball:N]");
   verb->add_option("--context", o->context, "What draws: osmesa, or egl (a graphics card where there is one)")
       ->capture_default_str();
   verb->add_option("--colour", o->colour, "Colour of the balls: speed, size, spin or steel")->capture_default_str();

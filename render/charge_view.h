@@ -22,7 +22,7 @@ double coloured_value(Colour by, const Balls& balls, const Frame& frame, std::si
 
 void draw_balls(Canvas& canvas, const Balls& balls, const Frame& frame, const ColourScale& scale);
 
-// Paths of the last `seconds` as the camera of each moment saw them, fading into the past.
+// Paths of the last `seconds` as `camera_then` sees each moment of them, fading into the past.
 void draw_trails(Canvas& canvas, const Balls& balls, const Frame& frame, std::span<const Frame> past, double seconds,
                  const ColourScale& scale, const std::function<Camera(const Frame&)>& camera_then);
 

@@ -147,8 +147,12 @@ double Renderer::trail_seconds() const { return impl_->trail_seconds(); }
 void Renderer::Impl::draw_moving(const Frame& frame, const Moment& moment) {
   const Overlay& overlay = style.overlay;
   const View& view = style.view;
-  const auto camera_then = [&](const Frame& then) { return camera_of(layout, view, then, setup.mill_speed); };
-  canvas->layout.camera = camera_then(frame);
+  const Camera camera = camera_of(layout, view, frame, setup.mill_speed);
+  // Trails are paths in the laboratory, or against the shell; against a ball they would lead through the steel.
+  const auto camera_then = [&](const Frame& then) {
+    return view.from == View::From::kShell ? camera_of(layout, view, then, setup.mill_speed) : camera;
+  };
+  canvas->layout.camera = camera;
   if (view.is_cut()) {
     canvas->clip(layout.view);
     draw_shell(*canvas, shape);

@@ -19,7 +19,7 @@ namespace tumble::render {
 namespace {
 
 // In units of the layout, of which a picture is at least 900 wide and 720 high.
-constexpr double kFoot = 78, kHead = 14, kCaption = 34, kGap = 12, kMargin = 28;
+constexpr double kFoot = 86, kHead = 14, kCaption = 34, kGap = 12, kMargin = 28;
 constexpr int kSmallestCell = 64;  // [px]
 
 struct Cells {
@@ -110,19 +110,19 @@ struct Sheet::Furniture {
                        cells.top(i) - px(8), name);
     }
     const double top = style.height - px(kFoot - 16);
-    canvas->meshes.line({px(kMargin), std::round(top - px(8))}, {style.width - px(kMargin), std::round(top - px(8))},
+    canvas->meshes.line({px(kMargin), std::round(top - px(14))}, {style.width - px(kMargin), std::round(top - px(14))},
                         canvas->stroke(1.0), ink::kFaint);
-    canvas->text.add(time_note(style.slow), px(kMargin + 118), top + px(34), {canvas->letter(13), ink::kQuiet});
+    canvas->text.add(time_note(style.slow), px(kMargin + 118), top + px(38), {canvas->letter(13), ink::kQuiet});
     draw_scale_bar(*canvas, {style.width * 0.33, style.height - px(30)}, radius_of(largest), kNotGiven);
     const double right = style.width - px(kMargin);
-    draw_colour_scale(*canvas, right - px(440), right, top + px(21), scale, radii);
+    draw_colour_scale(*canvas, right - px(440), right, top + px(24), scale, radii);
     canvas->flush();
   }
 
   void draw_clock(double clock) const {
     const TextStyle large{canvas->letter(28), ink::kText, Weight::kBold};
     const std::string seconds = fmt::format("{:.2f}", clock);
-    const double baseline = style.height - canvas->px(kFoot - 50), left = canvas->px(kMargin);
+    const double baseline = style.height - canvas->px(kFoot - 54), left = canvas->px(kMargin);
     canvas->text.add(seconds, left, baseline, large);
     canvas->text.add("s", left + canvas->text.width(seconds, large) + canvas->px(6), baseline,
                      {canvas->letter(17), ink::kQuiet});
