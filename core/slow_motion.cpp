@@ -5,10 +5,13 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/units.h"
+
 namespace tumble {
 namespace {
 
 constexpr double kOverlap = 0.1;  // of the smaller radius: what nobody sees
+constexpr double kUnsure = 0.05;  // of the radius
 constexpr int kPasses = 8;        // pushing one pair apart may push another together
 
 double overlap(const Frame& f, const Balls& balls, std::size_t i, std::size_t j) {
@@ -20,8 +23,23 @@ struct Pair {
   double allowed;  // overlap [m]
 };
 
-// Pairs whose squares meet, in a fixed order: balls in rows of cells, each against those that follow.
-std::vector<Pair> near_pairs(const Frame& f, const Balls& balls) {
+// Balls that may be shown where they never were: what they did between the frames is no flight, by more than a share of
+// their radius. Most balls of a run with frames enough are not.
+std::vector<char> unsure_balls(const Frame& a, const Frame& b, const Balls& balls) {
+  const double h = b.time - a.time;
+  std::vector<char> unsure(a.x.size());
+  for (std::size_t i = 0; i < a.x.size(); ++i) {
+    const double kick = std::hypot(b.vx[i] - a.vx[i], b.vy[i] - a.vy[i] + kGravity * h);
+    const double aside = std::hypot(b.x[i] - a.x[i] - h / 2 * (a.vx[i] + b.vx[i]),  // 0 for a flight
+                                    b.y[i] - a.y[i] - h / 2 * (a.vy[i] + b.vy[i]));
+    unsure[i] = 4.0 / 27 * h * kick + aside > kUnsure * balls.radius[i];
+  }
+  return unsure;
+}
+
+// Pairs that nearly touch and of which one is unsure, in a fixed order. Balls are sorted into cells, so that each is
+// held only against those about it.
+std::vector<Pair> near_pairs(const Frame& f, const Balls& balls, const std::vector<char>& unsure) {
   const double cell = 2.2 * *std::max_element(balls.radius.begin(), balls.radius.end());
   const auto [left, right] = std::minmax_element(f.x.begin(), f.x.end());
   const auto [low, high] = std::minmax_element(f.y.begin(), f.y.end());
@@ -46,6 +64,7 @@ std::vector<Pair> near_pairs(const Frame& f, const Balls& balls) {
 
   std::vector<Pair> pairs;
   for (std::size_t i = 0; i < f.x.size(); ++i) {
+    if (!unsure[i]) continue;
     for (std::int64_t row = std::max<std::int64_t>(row_of(i) - 1, 0); row <= std::min(row_of(i) + 1, rows - 1); ++row) {
       const std::int64_t from = std::max<std::int64_t>(column_of(i) - 1, 0),
                          to = std::min(column_of(i) + 1, columns - 1);
@@ -53,7 +72,8 @@ std::vector<Pair> near_pairs(const Frame& f, const Balls& balls) {
       for (std::size_t k = first[static_cast<std::size_t>(row * columns + from)]; k < end; ++k) {
         const std::size_t j = members[k];
         const double reach = 1.2 * (balls.radius[i] + balls.radius[j]);
-        if (j > i && std::abs(f.x[i] - f.x[j]) < reach && std::abs(f.y[i] - f.y[j]) < reach) pairs.push_back({i, j, 0});
+        if (j != i && (j > i || !unsure[j]) && std::abs(f.x[i] - f.x[j]) < reach && std::abs(f.y[i] - f.y[j]) < reach)
+          pairs.push_back({i, j, 0});
       }
     }
   }
@@ -65,7 +85,9 @@ std::vector<Pair> near_pairs(const Frame& f, const Balls& balls) {
 Frame slow_motion(const Frame& a, const Frame& b, const Balls& balls, double time) {
   Frame f = between(a, b, time);
   if (f.x.size() < 2 || f.time == a.time || f.time == b.time) return f;
-  std::vector<Pair> pairs = near_pairs(f, balls);
+  const std::vector<char> unsure = unsure_balls(a, b, balls);
+  if (std::find(unsure.begin(), unsure.end(), 1) == unsure.end()) return f;
+  std::vector<Pair> pairs = near_pairs(f, balls, unsure);
   for (Pair& p : pairs)
     p.allowed = std::max({kOverlap * std::min(balls.radius[p.i], balls.radius[p.j]), overlap(a, balls, p.i, p.j),
                           overlap(b, balls, p.i, p.j)});
