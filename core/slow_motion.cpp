@@ -14,13 +14,15 @@ constexpr double kOverlap = 0.1;  // of the smaller radius: what nobody sees
 constexpr double kUnsure = 0.05;  // of the radius
 constexpr int kPasses = 8;        // pushing one pair apart may push another together
 
+double length(double x, double y) { return std::sqrt(x * x + y * y); }  // of what is neither huge nor tiny
+
 double overlap(const Frame& f, const Balls& balls, std::size_t i, std::size_t j) {
-  return balls.radius[i] + balls.radius[j] - std::hypot(f.x[i] - f.x[j], f.y[i] - f.y[j]);
+  return balls.radius[i] + balls.radius[j] - length(f.x[i] - f.x[j], f.y[i] - f.y[j]);
 }
 
 struct Pair {
   std::size_t i, j;
-  double allowed;  // overlap [m]
+  double allowed = kNotGiven;  // overlap [m], once asked for
 };
 
 // Balls that may be shown where they never were: what they did between the frames is no flight, by more than a share of
@@ -29,9 +31,9 @@ std::vector<char> unsure_balls(const Frame& a, const Frame& b, const Balls& ball
   const double h = b.time - a.time;
   std::vector<char> unsure(a.x.size());
   for (std::size_t i = 0; i < a.x.size(); ++i) {
-    const double kick = std::hypot(b.vx[i] - a.vx[i], b.vy[i] - a.vy[i] + kGravity * h);
-    const double aside = std::hypot(b.x[i] - a.x[i] - h / 2 * (a.vx[i] + b.vx[i]),  // 0 for a flight
-                                    b.y[i] - a.y[i] - h / 2 * (a.vy[i] + b.vy[i]));
+    const double kick = length(b.vx[i] - a.vx[i], b.vy[i] - a.vy[i] + kGravity * h);
+    const double aside = length(b.x[i] - a.x[i] - h / 2 * (a.vx[i] + b.vx[i]),  // 0 for a flight
+                                b.y[i] - a.y[i] - h / 2 * (a.vy[i] + b.vy[i]));
     unsure[i] = 4.0 / 27 * h * kick + aside > kUnsure * balls.radius[i];
   }
   return unsure;
@@ -73,7 +75,7 @@ std::vector<Pair> near_pairs(const Frame& f, const Balls& balls, const std::vect
         const std::size_t j = members[k];
         const double reach = 1.2 * (balls.radius[i] + balls.radius[j]);
         if (j != i && (j > i || !unsure[j]) && std::abs(f.x[i] - f.x[j]) < reach && std::abs(f.y[i] - f.y[j]) < reach)
-          pairs.push_back({i, j, 0});
+          pairs.push_back({i, j});
       }
     }
   }
@@ -88,15 +90,17 @@ Frame slow_motion(const Frame& a, const Frame& b, const Balls& balls, double tim
   const std::vector<char> unsure = unsure_balls(a, b, balls);
   if (std::find(unsure.begin(), unsure.end(), 1) == unsure.end()) return f;
   std::vector<Pair> pairs = near_pairs(f, balls, unsure);
-  for (Pair& p : pairs)
-    p.allowed = std::max({kOverlap * std::min(balls.radius[p.i], balls.radius[p.j]), overlap(a, balls, p.i, p.j),
-                          overlap(b, balls, p.i, p.j)});
   bool has_pushed = true;
   for (int pass = 0; pass < kPasses && has_pushed; ++pass) {
     has_pushed = false;
-    for (const Pair& p : pairs) {
-      const double dx = f.x[p.j] - f.x[p.i], dy = f.y[p.j] - f.y[p.i], apart = std::hypot(dx, dy);
-      const double push = balls.radius[p.i] + balls.radius[p.j] - p.allowed - apart;
+    for (Pair& p : pairs) {
+      const double dx = f.x[p.j] - f.x[p.i], dy = f.y[p.j] - f.y[p.i], apart = length(dx, dy);
+      const double unseen = kOverlap * std::min(balls.radius[p.i], balls.radius[p.j]);
+      double push = balls.radius[p.i] + balls.radius[p.j] - apart - unseen;
+      if (!(push > 0)) continue;
+      if (std::isnan(p.allowed))
+        p.allowed = std::max({unseen, overlap(a, balls, p.i, p.j), overlap(b, balls, p.i, p.j)});
+      push -= p.allowed - unseen;
       if (!(push > 0)) continue;
       has_pushed = true;
       const double ux = apart > 0 ? dx / apart : 1, uy = apart > 0 ? dy / apart : 0;
