@@ -26,6 +26,8 @@ PictureOutput::PictureOutput(const fs::path& output, const io::FilmFormat& forma
   if (kind_ == OutputKind::kFilm) film_ = std::make_unique<io::FilmWriter>(output.string(), format);
 }
 
+bool PictureOutput::can_be_cut() const { return !film_ || io::can_be_cut(output_.string()); }
+
 void PictureOutput::put(std::size_t index, const Image& image) {
   if (film_)
     film_->write(image);

@@ -24,11 +24,14 @@ OutputKind output_kind(const fs::path& output);
 // Of a PNG in a folder of pictures: frame_000000.png.
 std::string picture_name(std::size_t index);
 
-// Pictures on their way to a film, to a folder that exists, or one picture to its file.
+// Pictures on their way to a film, to a folder that exists (by several threads in any order), or one picture to its
+// file.
 class PictureOutput {
  public:
   PictureOutput(const fs::path& output, const io::FilmFormat& format);
-  void put(std::size_t index, const Image& image);  // in order
+  void put(std::size_t index, const Image& image);  // of a film in order
+  io::FilmWriter* film() { return film_.get(); }    // nullptr where it is none; takes parts too
+  bool can_be_cut() const;                          // whether pictures need not come in order
   void finish();
 
  private:

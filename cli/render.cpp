@@ -127,8 +127,9 @@ void read_times(Options& o) {
 std::size_t render_runs(const std::vector<io::RunReader>& runs, const Options& o) {
   std::vector<ChargeMotion> truths;
   for (std::size_t i = 0; i < runs.size(); ++i) {
-    truths.push_back(o.plan.style.overlay.toe || o.plan.style.overlay.shoulder ? measure_run(runs[i], o)
-                                                                               : ChargeMotion{});
+    truths.emplace_back();
+    if (o.plan.style.overlay.toe || o.plan.style.overlay.shoulder)
+      truths.back().profile = measure_run_edges(runs[i], o);
     truths.back().origin = o.runs[i].string();
   }
   if (runs.size() == 1) return render_run(runs[0], truths[0], o.plan, o.output, o);

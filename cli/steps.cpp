@@ -4,19 +4,21 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
-#include <exception>
-#include <fstream>
+#include <map>
 #include <memory>
+#include <mutex>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "cli/picture_output.h"
 #include "cli/run_player.h"
 #include "core/error.h"
+#include "core/large_arrays.h"
 #include "core/parallel_for.h"
 #include "core/quantile.h"
 #include "io/drawing_file.h"
-#include "io/tracks_file.h"
+#include "io/image_file.h"
 #include "render/sheet.h"
 
 namespace tumble::cli {
@@ -50,11 +52,22 @@ Range scale_of(const std::vector<Shot>& shots, render::Colour colour) {
   return {0, std::max(quantile_of(std::move(values), 0.99), 1e-3)};
 }
 
-// HDF5's signature: a run file, even one cut short, is to be refused as a run file and not as a film.
-bool looks_like_hdf5(const fs::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  char head[8] = {};
-  return file.read(head, sizeof head) && std::memcmp(head, "\x89HDF\r\n\x1a\n", sizeof head) == 0;
+analysis::NextFrame frames_of(const io::RunReader& run) {
+  return [&run, next = std::size_t{0}](Frame& frame) mutable {
+    if (next >= run.frame_count()) return false;
+    frame = run.frame(next++);
+    return true;
+  };
+}
+
+constexpr std::size_t kMostWorkers = 16;
+
+// Frames of a film that are encoded by themselves, the same in all parts but the last: enough that their key frames are
+// no burden (of 48 they make a film some 4 % larger), few enough that several threads have work in a short film, and
+// that a player can jump. Hangs on the film alone.
+std::size_t part_length(std::size_t frames) {
+  const std::size_t parts = std::max<std::size_t>(1, frames / std::clamp<std::size_t>(frames / 16, 48, 240));
+  return (frames + parts - 1) / parts;
 }
 
 // The marks of one run at its frame, and its torque.
@@ -100,44 +113,39 @@ void check_view(const std::vector<Shot>& shots, const render::View& view) {
 
 ChargeMotion measure_run(const io::RunReader& run, const CommonOptions& options) {
   ProgressLine line(options, "reading the run", "nothing was written");
-  std::size_t next = 0;
-  return analysis::measure_frames(
-      run.setup(),
-      [&](Frame& frame) {
-        if (next >= run.frame_count()) return false;
-        frame = run.frame(next++);
-        return true;
-      },
-      line.callback());
+  return analysis::measure_frames(run.setup(), frames_of(run), line.callback());
+}
+
+std::vector<ProfileRow> measure_run_edges(const io::RunReader& run, const CommonOptions& options) {
+  ProgressLine line(options, "reading the run", "nothing was written");
+  return analysis::measure_edges(run.setup(), frames_of(run), line.callback());
 }
 
 std::size_t render_shots(const std::vector<Shot>& shots, const FilmPlan& plan, const fs::path& output,
                          const CommonOptions& options) {
+  keep_large_arrays();
   check_view(shots, plan.style.view);
   const Timeline timeline = timeline_of(shots, plan);
+  const std::size_t count = timeline.count;
   const Range scale = scale_of(shots, plan.style.colour);
   std::vector<render::SheetMill> mills;
   for (const Shot& shot : shots) mills.push_back({shot.run->setup(), shot.label});
-  const auto new_sheet = [&] {
-    auto sheet = std::make_unique<render::Sheet>(mills, plan.style);
-    sheet->set_scale(scale.low, scale.high);
-    return sheet;
+  const auto moments_of = [&](const std::vector<Frame>& frames, const std::vector<std::vector<Frame>>& past) {
+    std::vector<render::Moment> moments;
+    for (std::size_t c = 0; c < shots.size(); ++c) {
+      moments.push_back(moment_of(shots[c], frames[c]));
+      moments.back().past = past[c];
+    }
+    return moments;
   };
 
-  // Several sheets draw a batch of frames side by side; then the batch is written in order.
-  constexpr std::size_t kEach = 4;
-  const std::size_t workers =
-      std::min<std::size_t>({static_cast<std::size_t>(thread_limit()), 8, (timeline.count + kEach - 1) / kEach});
-  std::vector<std::unique_ptr<render::Sheet>> sheets;
-  for (std::size_t w = 0; w < workers; ++w) sheets.push_back(new_sheet());
-
-  Players players(shots);
   // Trails show a fixed stretch of true time: so many pictures before each. A still takes them as a film would.
   const double before_step = timeline.step > 0 ? timeline.step : 1.0 / 240;
-  const std::size_t trail =
-      plan.style.overlay.tracks ? static_cast<std::size_t>(std::ceil(sheets[0]->trail_seconds() / before_step)) : 0;
+  const auto trail_of = [&](const render::Sheet& sheet) {
+    return plan.style.overlay.tracks ? static_cast<std::size_t>(std::ceil(sheet.trail_seconds() / before_step)) : 0;
+  };
   // What lies before a picture, oldest first, as far as the runs go; by run.
-  const auto frames_before = [&](std::size_t picture) {
+  const auto frames_before = [&](Players& players, std::size_t picture, std::size_t trail) {
     std::vector<std::vector<Frame>> past(shots.size());
     for (std::size_t k = trail; k >= 1; --k) {
       const double then = timeline.first + (static_cast<double>(picture) - static_cast<double>(k)) * before_step;
@@ -149,14 +157,12 @@ std::size_t render_shots(const std::vector<Shot>& shots, const FilmPlan& plan, c
   };
 
   if (output_kind(output) == OutputKind::kDrawing) {
-    const std::vector<std::vector<Frame>> past = frames_before(0);
+    render::Sheet sheet(mills, plan.style);
+    sheet.set_scale(scale.low, scale.high);
+    Players players(shots);
+    const std::vector<std::vector<Frame>> past = frames_before(players, 0, trail_of(sheet));
     const std::vector<Frame> frames = players.at(timeline.first);
-    std::vector<render::Moment> moments;
-    for (std::size_t c = 0; c < shots.size(); ++c) {
-      moments.push_back(moment_of(shots[c], frames[c]));
-      moments.back().past = past[c];
-    }
-    const Drawing drawing = sheets[0]->sketch(frames, moments, timeline.first);
+    const Drawing drawing = sheet.sketch(frames, moments_of(frames, past), timeline.first);
     output.extension() == ".svg" ? io::write_svg(output, drawing) : io::write_pdf(output, drawing);
     return 1;
   }
@@ -164,59 +170,81 @@ std::size_t render_shots(const std::vector<Shot>& shots, const FilmPlan& plan, c
   PictureOutput pictures(output, plan.format);
   ProgressLine line(options, "rendering", "nothing was written under " + output.string());
   const Progress progress = line.callback();
-  std::vector<Image> images(workers * kEach);
-  std::vector<std::vector<Frame>> frames(images.size());
-  for (std::size_t from = 0; from < timeline.count; from += images.size()) {
-    report(progress, double(from) / double(timeline.count));
-    const std::size_t n = std::min(images.size(), timeline.count - from);
-    std::vector<std::vector<Frame>> past(shots.size());
-    if (trail > 0) past = frames_before(from);
-    const std::size_t lead = past[0].size();
-    for (std::size_t i = 0; i < n; ++i) frames[i] = players.at(timeline.at(from + i));
-    if (trail > 0)
-      for (std::size_t c = 0; c < shots.size(); ++c)
-        for (std::size_t i = 0; i < n; ++i) past[c].push_back(frames[i][c]);
 
-    parallel_for(workers, 1, [&](std::size_t w, std::size_t) {
-      std::vector<render::Moment> moments(shots.size());
-      for (std::size_t i = w * kEach; i < std::min(n, (w + 1) * kEach); ++i) {
-        const std::size_t here = lead + i, first = here > trail ? here - trail : 0;
+  // Each thread takes the next part of the film, draws and encodes it all, and puts it behind those that are ready.
+  const std::size_t length = pictures.can_be_cut() ? part_length(count) : count;
+  const std::size_t workers =
+      std::min({static_cast<std::size_t>(thread_limit()), (count + length - 1) / length, kMostWorkers});
+  std::mutex mutex;  // of all that follows
+  std::size_t next = 0, drawn = 0;
+  bool failed = false;
+  std::map<std::size_t, io::FilmPart> ready;  // by its first frame
+  std::size_t appended = 0;
+  const auto take = [&] {
+    const std::lock_guard lock(mutex);
+    return failed ? count : std::exchange(next, std::min(count, next + length));
+  };
+  const auto tell = [&] {
+    const std::lock_guard lock(mutex);
+    report(progress, double(drawn++) / double(count));
+    return !failed;
+  };
+  const auto deliver = [&](std::size_t first, io::FilmPart part) {
+    const std::lock_guard lock(mutex);
+    ready.emplace(first, std::move(part));
+    for (auto it = ready.find(appended); it != ready.end(); it = ready.find(appended)) {
+      pictures.film()->append(std::move(it->second));
+      ready.erase(it);
+      appended = std::min(count, appended + length);
+    }
+  };
+
+  const auto draw_parts = [&] {
+    render::Sheet sheet(mills, plan.style);
+    sheet.set_scale(scale.low, scale.high);
+    Players players(shots);
+    const std::size_t trail = trail_of(sheet);
+    for (std::size_t first = take(); first < count; first = take()) {
+      std::vector<std::vector<Frame>> past = frames_before(players, first, trail);
+      std::optional<io::FilmPart> part;
+      if (pictures.film()) part = pictures.film()->part(static_cast<std::int64_t>(first));
+      for (std::size_t i = first; i < std::min(count, first + length); ++i) {
+        if (!tell()) return;
+        std::vector<Frame> frames = players.at(timeline.at(i));
+        const Image& image = sheet.draw(frames, moments_of(frames, past), timeline.at(i));
+        if (part)
+          part->write(image);
+        else
+          pictures.put(i, image);
+        if (trail == 0) continue;
         for (std::size_t c = 0; c < shots.size(); ++c) {
-          moments[c] = moment_of(shots[c], frames[i][c]);
-          if (trail > 0) moments[c].past = std::span<const Frame>(past[c]).subspan(first, here - first);
+          if (past[c].size() == trail) past[c].erase(past[c].begin());
+          past[c].push_back(std::move(frames[c]));
         }
-        images[i] = sheets[w]->draw(frames[i], moments, timeline.at(from + i));
       }
-    });
-    for (std::size_t i = 0; i < n; ++i) pictures.put(from + i, images[i]);
-  }
+      if (!part) continue;
+      part->finish();
+      deliver(first, std::move(*part));
+    }
+  };
+  parallel_for(workers, 1, [&](std::size_t, std::size_t) {
+    try {
+      draw_parts();
+    } catch (...) {
+      const std::lock_guard lock(mutex);
+      failed = true;  // the others leave too
+      throw;
+    }
+  });
   pictures.finish();
   report(progress, 1);
-  return timeline.count;
+  return count;
 }
 
 std::size_t render_run(const io::RunReader& run, const ChargeMotion& truth, const FilmPlan& plan,
                        const fs::path& output, const CommonOptions& options) {
   if (run.frame_count() == 0) throw InputError(truth.origin, "holds no frames; simulate for longer");
   return render_shots({{&run, &truth, "", run.time().front()}}, plan, output, options);
-}
-
-ChargeMotion measure(const fs::path& input, const analysis::TracksOptions& film, const CommonOptions& options) {
-  std::error_code error;
-  if (!fs::exists(input, error))
-    throw InputError(input.string(), "does not exist; give a film, a folder or a run file");
-  ChargeMotion motion;
-  if (looks_like_hdf5(input)) {
-    motion = measure_run(io::RunReader(input), options);
-  } else if (input.extension() == ".csv") {
-    motion = analysis::measure_tracks(io::read_pixel_tracks(input), film);
-  } else {
-    ProgressLine line(options, "reading the film", "nothing was written");
-    motion = fs::is_directory(input, error) ? analysis::measure_stills(input.string(), film, line.callback())
-                                            : analysis::measure_film(input.string(), film, line.callback());
-  }
-  motion.origin = input.string();
-  return motion;
 }
 
 }  // namespace tumble::cli

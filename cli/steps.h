@@ -17,6 +17,9 @@ namespace fs = std::filesystem;
 // The charge's true motion, from a run file.
 ChargeMotion measure_run(const io::RunReader& run, const CommonOptions& options);
 
+// Of it, toe and shoulder frame by frame: what their marks need.
+std::vector<ProfileRow> measure_run_edges(const io::RunReader& run, const CommonOptions& options);
+
 // Renders runs, side by side where there are several, as what `output` is by its name (cli/picture_output.h). Returns
 // the number of pictures.
 std::size_t render_shots(const std::vector<Shot>& shots, const FilmPlan& plan, const fs::path& output,
