@@ -5,12 +5,11 @@
 #include <memory>
 #include <vector>
 
+#include "cli/picture_output.h"
 #include "cli/run_player.h"
 #include "core/error.h"
 #include "core/mill_shape.h"
 #include "core/parallel_for.h"
-#include "io/image_file.h"
-#include "io/output.h"
 #include "render/film_camera.h"
 
 namespace tumble::cli {
@@ -52,14 +51,13 @@ render::FilmMoment moment_of(const Frame& frame, double mill_speed, double lengt
 }  // namespace
 
 std::size_t render_filmed_run(const io::RunReader& run, const FilmPlan& plan, std::uint64_t look_seed,
-                              const fs::path& output, bool as_pictures, const CommonOptions& options) {
+                              const fs::path& output, const CommonOptions& options) {
   if (run.frame_count() == 0) throw InputError("run", "holds no frames; simulate for longer");
-  const double film_rate = double(plan.format.fps_numerator) / plan.format.fps_denominator;
-  const double first = run.time().front(), step = 1 / (film_rate * plan.style.slow);
-  const auto count = static_cast<std::size_t>(std::floor((run.time().back() - first) / step + 1e-6)) + 1;
+  const double first = run.time().front();
+  const Timeline timeline = timeline_of({{&run, nullptr, "", first}}, plan);
 
   render::FilmLook look = render::studio_look(look_seed, plan.style.width, plan.style.height);
-  look.timing.exposure = std::min(look.timing.exposure, 0.5 * step);
+  if (timeline.step > 0) look.timing.exposure = std::min(look.timing.exposure, 0.5 * timeline.step);
   const render::FilmScene scene = scene_of(run.setup(), plan.style.mirror);
   RunPlayer player(run);
   const double speed = run.setup().mill_speed;
@@ -67,36 +65,29 @@ std::size_t render_filmed_run(const io::RunReader& run, const FilmPlan& plan, st
   // Several cameras draw a batch of frames side by side, all of them exposed for the film's first frame.
   std::vector<std::unique_ptr<render::FilmCamera>> cameras(
       std::min<std::size_t>(static_cast<std::size_t>(thread_limit()), 8));
-  const Frame start = player.at(first);
+  const Frame start = player.at(first + timeline.first);
   parallel_for(cameras.size(), 1, [&](std::size_t w, std::size_t) {
     cameras[w] = std::make_unique<render::FilmCamera>();
     cameras[w]->aim(look, scene);
     cameras[w]->draw(moment_of(start, speed, scene.length), 0);
   });
-  std::unique_ptr<io::FilmWriter> film;
-  if (!as_pictures) film = std::make_unique<io::FilmWriter>(output.string(), plan.format);
-
+  PictureOutput pictures(output, plan.format);
   ProgressLine line(options, "filming", "nothing was written under " + output.string());
   const Progress progress = line.callback();
   std::vector<Image> images(cameras.size());
   std::vector<Frame> frames(cameras.size());
-  for (std::size_t from = 0; from < count; from += cameras.size()) {
-    report(progress, double(from) / double(count));
-    const std::size_t n = std::min(cameras.size(), count - from);
-    for (std::size_t i = 0; i < n; ++i) frames[i] = player.at(first + double(from + i) * step);
+  for (std::size_t from = 0; from < timeline.count; from += cameras.size()) {
+    report(progress, double(from) / double(timeline.count));
+    const std::size_t n = std::min(cameras.size(), timeline.count - from);
+    for (std::size_t i = 0; i < n; ++i) frames[i] = player.at(first + timeline.at(from + i));
     parallel_for(n, 1, [&](std::size_t i, std::size_t) {
       images[i] = cameras[i]->draw(moment_of(frames[i], speed, scene.length), from + i).image;
     });
-    for (std::size_t i = 0; i < n; ++i) {
-      if (film)
-        film->write(images[i]);
-      else
-        io::write_png((output / picture_name(from + i)).string(), images[i]);
-    }
+    for (std::size_t i = 0; i < n; ++i) pictures.put(from + i, images[i]);
   }
-  if (film) film->finish();
+  pictures.finish();
   report(progress, 1);
-  return count;
+  return timeline.count;
 }
 
 }  // namespace tumble::cli

@@ -1,15 +1,22 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <sstream>
 
 #include "cli/film_theme.h"
 #include "cli/options.h"
+#include "cli/picture_output.h"
 #include "cli/steps.h"
 #include "cli/verbs.h"
 #include "core/error.h"
 #include "core/parallel_for.h"
 #include "io/output.h"
+#include "render/sheet.h"
 
 namespace tumble::cli {
 namespace {
@@ -20,12 +27,19 @@ const std::map<std::string, render::Colour> kColours = {{"speed", render::Colour
                                                         {"steel", render::Colour::kSteel}};
 
 struct Options : CommonOptions {
-  fs::path run, output;
-  std::string size = "1280x720", overlay = "toe,shoulder", colour = "speed", theme = "default";
+  std::vector<fs::path> runs;
+  fs::path output;
+  std::string camera = "lab";
+  std::optional<std::string> size, preset;
+  std::optional<double> fps, crf, zoom, slow, at, from, seconds, every;
+  std::string overlay = "toe,shoulder", colour = "speed", theme = "default";
   std::uint64_t look_seed = 1;
-  double fps = 60;
+  std::string context = "osmesa";
   FilmPlan plan;
 };
+
+const std::map<std::string, render::ContextKind> kContexts = {{"osmesa", render::ContextKind::kOsmesa},
+                                                              {"egl", render::ContextKind::kEgl}};
 
 render::Overlay parse_overlay(const std::string& list) {
   render::Overlay overlay;
@@ -49,40 +63,136 @@ render::Overlay parse_overlay(const std::string& list) {
 enum class Theme { kDefault, kFilm };
 const std::map<std::string, Theme> kThemes = {{"default", Theme::kDefault}, {"film", Theme::kFilm}};
 
+render::View parse_view(const std::string& camera, const std::optional<double>& zoom) {
+  using From = render::View::From;
+  render::View view;
+  if (camera.starts_with("ball:")) {
+    const char* const end = camera.data() + camera.size();
+    const auto read = std::from_chars(camera.data() + 5, end, view.ball);
+    if (read.ec != std::errc() || read.ptr != end)
+      throw InputError("--camera", "is \"" + camera + "\"; give the ball's number, such as ball:17");
+    view.from = From::kBall;
+    view.zoom = 2;
+  } else {
+    view.from =
+        parse_name<From>(camera, "--camera", {{"lab", From::kLab}, {"shell", From::kShell}, {"ball:N", From::kBall}});
+    if (view.from == From::kBall) throw InputError("--camera", "needs the ball's number, such as ball:17");
+  }
+  if (zoom) view.zoom = *zoom;
+  if (!(view.zoom >= 0.2 && view.zoom <= 50)) throw InputError("--zoom", "must lie between 0.2 and 50");
+  return view;
+}
+
+// An option that this kind of output has no use for is a mistake, and not silently left out.
+void refuse_odd(const Options& o, OutputKind kind) {
+  const bool is_still = kind == OutputKind::kPicture || kind == OutputKind::kDrawing;
+  const auto refuse = [&](bool given, const char* option, const char* why) {
+    if (given) throw InputError(option, why);
+  };
+  if (is_still) {
+    refuse(o.fps.has_value(), "--fps", "is of films; a still has none");
+    refuse(o.slow.has_value(), "--slow", "is of films; a still has none");
+    refuse(o.crf.has_value() || o.preset.has_value(), o.crf ? "--crf" : "--preset", "is of films; a still has none");
+    refuse(o.every.has_value(), "--every", "is of films and folders; a still is taken --at one moment");
+    refuse(o.at && (o.from || o.seconds), "--at", "already says when; leave out --from and --for");
+  } else {
+    refuse(o.at.has_value(), "--at", "is of stills; give -o STILL.png, .svg or .pdf, or --from and --for");
+  }
+  refuse(o.every.has_value() && kind != OutputKind::kFolder, "--every", "is of folders; a film has --fps and --slow");
+  refuse(o.every.has_value() && (o.fps || o.slow), "--every", "already says when; leave out --fps and --slow");
+  const fs::path extension = o.output.extension();
+  if (kind == OutputKind::kFilm && extension != ".mp4") {
+    refuse(o.preset.has_value(), "--preset", "is x264's; only .mp4 has it");
+    refuse(o.crf.has_value() && extension == ".gif", "--crf", "is of .mp4 and .webm; a GIF has none");
+  }
+}
+
+void read_times(Options& o) {
+  const auto check = [](const std::optional<double>& value, const char* option, double& into) {
+    if (!value) return;
+    if (!(*value >= 0 && *value < 1e9)) throw InputError(option, "must be a time in s, >= 0");
+    into = *value;
+  };
+  check(o.from, "--from", o.plan.from);
+  check(o.seconds, "--for", o.plan.seconds);
+  check(o.at, "--at", o.plan.at);
+  check(o.every, "--every", o.plan.every);
+  if (o.every && *o.every < 1e-6) throw InputError("--every", "must be at least 1e-6 s");
+  if (o.slow) o.plan.style.slow = *o.slow;
+  if (!(o.plan.style.slow >= 0.01 && o.plan.style.slow <= 1e4))
+    throw InputError("--slow", "must lie between 0.01 and 10000; 1 is true time, 4 is four times slower");
+  if (o.plan.is_still || o.every) o.plan.style.slow = kNotGiven;
+}
+
+std::size_t render_runs(const std::vector<io::RunReader>& runs, const Options& o) {
+  std::vector<ChargeMotion> truths;
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    truths.emplace_back();
+    if (o.plan.style.overlay.toe || o.plan.style.overlay.shoulder)
+      truths.back().profile = measure_run_edges(runs[i], o);
+    truths.back().origin = o.runs[i].string();
+  }
+  if (runs.size() == 1) return render_run(runs[0], truths[0], o.plan, o.output, o);
+  const std::vector<Shot> shots = shots_side_by_side(runs, truths);
+  const auto end = [](const Shot& shot) { return shot.run->time().back() - shot.begin; };
+  const auto [shortest, longest] =
+      std::minmax_element(shots.begin(), shots.end(), [&](const Shot& a, const Shot& b) { return end(a) < end(b); });
+  if (!o.plan.is_still && end(*longest) > 1.01 * end(*shortest))
+    say(o, fmt::format("note: the film ends with its shortest run, {}, after {:.2f} s", shortest->truth->origin,
+                       end(*shortest)));
+  return render_shots(shots, o.plan, o.output, o);
+}
+
 void render(Options o) {
   limit_threads(o.threads);
   const bool filmed = parse_name(o.theme, "--theme", kThemes) == Theme::kFilm;
-  parse_size(o.size, "--size", o.plan.format.width, o.plan.format.height);
-  parse_rate(o.fps, "--fps", o.plan.format.fps_numerator, o.plan.format.fps_denominator);
-  if (!(o.plan.style.slow >= 0.01 && o.plan.style.slow <= 1e4))
-    throw InputError("--slow", "must lie between 0.01 and 10000; 1 is true time, 4 is four times slower");
+  const OutputKind kind = output_kind(o.output);
+  refuse_odd(o, kind);
+  if (kind == OutputKind::kFilm) o.plan.format = io::usual_format(o.output.string());
+  if (o.size) parse_size(*o.size, "--size", o.plan.format.width, o.plan.format.height);
+  if (o.fps) parse_rate(*o.fps, "--fps", o.plan.format.fps_numerator, o.plan.format.fps_denominator);
+  if (o.preset) o.plan.format.preset = *o.preset;
+  if (o.crf) o.plan.format.crf = *o.crf;
+  o.plan.format.threads = o.threads;
+  o.plan.is_still = kind == OutputKind::kPicture || kind == OutputKind::kDrawing;
+  read_times(o);
   o.plan.style.width = o.plan.format.width;
   o.plan.style.height = o.plan.format.height;
   o.plan.style.colour = parse_name(o.colour, "--colour", kColours);
   o.plan.style.overlay = parse_overlay(o.overlay);
-  o.plan.format.threads = o.threads;
+  o.plan.style.view = parse_view(o.camera, o.zoom);
+  o.plan.style.context = parse_name(o.context, "--context", kContexts);
+  if (filmed) {
+    if (kind == OutputKind::kDrawing) throw InputError(o.output.string(), "cannot hold a filmed mill; give a .png");
+    if (o.runs.size() > 1) throw InputError("--theme", "film shows one run; leave out the others");
+    if (o.camera != "lab" || o.zoom)
+      throw InputError("--theme", "film has a camera of its own; leave out --camera and --zoom");
+    if (o.context != "osmesa") throw InputError("--theme", "film is drawn by osmesa; leave out --context");
+    if (o.plan.is_still || o.every) o.plan.style.slow = 1;
+  }
 
-  std::error_code error;
-  const bool pictures = !o.output.has_filename() || fs::is_directory(o.output, error);
-  if (pictures) {
+  if (kind == OutputKind::kFolder) {
     io::make_output_folder(o.output);
     io::check_output_file(o.output / picture_name(0), o.force);
   } else {
-    if (o.output.extension() != ".mp4")
-      throw InputError(o.output.string(), "is no .mp4; give FILM.mp4, or FRAMES/ for a folder of PNG");
-    io::check_not_input(o.output, o.run);
+    for (const fs::path& run : o.runs) io::check_not_input(o.output, run);
     io::check_output_file(o.output, o.force);
   }
-  const io::RunReader run(o.run);
-  ChargeMotion truth;
-  if (!filmed && (o.plan.style.overlay.toe || o.plan.style.overlay.shoulder)) truth = measure_run(run, o);
-  truth.origin = o.run.string();
-  const std::size_t frames = filmed ? render_filmed_run(run, o.plan, o.look_seed, o.output, pictures, o)
-                                    : render_run(run, truth, o.plan, o.output, pictures, o);
+  std::vector<io::RunReader> runs;
+  for (const fs::path& path : o.runs) {
+    runs.emplace_back(path);
+    if (runs.back().frame_count() == 0) throw InputError(path.string(), "holds no frames; simulate for longer");
+  }
+  const std::size_t frames =
+      filmed ? render_filmed_run(runs[0], o.plan, o.look_seed, o.output, o) : render_runs(runs, o);
   if (!o.json) return;
-  const nlohmann::ordered_json summary = {{"output", o.output.string()},    {"frames", frames},
-                                          {"frames_per_second", o.fps},     {"slow", o.plan.style.slow},
-                                          {"width_px", o.plan.style.width}, {"height_px", o.plan.style.height}};
+  nlohmann::ordered_json summary = {{"output", o.output.string()}, {"frames", frames}};
+  if (!o.plan.is_still) {
+    summary["frames_per_second"] = o.fps ? *o.fps : double(o.plan.format.fps_numerator) / o.plan.format.fps_denominator;
+    if (!o.every) summary["slow"] = o.plan.style.slow;
+  }
+  summary["width_px"] = o.plan.style.width;
+  summary["height_px"] = o.plan.style.height;
   print(summary.dump(2) + "\n");
 }
 
@@ -90,12 +200,25 @@ void render(Options o) {
 
 void add_render(CLI::App& app) {
   auto o = std::make_shared<Options>();
-  CLI::App* verb = app.add_subcommand("render", "Turn a run into a film, or into numbered pictures");
-  verb->add_option("run", o->run, "RUN.h5")->required();
-  verb->add_option("-o,--output", o->output, "FILM.mp4, or FRAMES/ for PNG files")->required();
-  verb->add_option("--size", o->size, "Picture size in pixels")->capture_default_str();
-  verb->add_option("--fps", o->fps, "Film frames per second")->capture_default_str();
-  verb->add_option("--slow", o->plan.style.slow, "How many times slower than true time")->capture_default_str();
+  CLI::App* verb = app.add_subcommand("render", "Turn runs into a film, numbered pictures, or a still");
+  verb->add_option("runs", o->runs, "RUN.h5; several, up to 12, stand side by side")
+      ->required()
+      ->expected(1, static_cast<int>(render::kMostMills));
+  verb->add_option("-o,--output", o->output, "FILM.mp4, .webm or .gif; FRAMES/ for PNG files; STILL.png, .svg or .pdf")
+      ->required();
+  verb->add_option("--size", o->size, "Picture size in pixels [1280x720; of a GIF 640x360]");
+  verb->add_option("--fps", o->fps, "Film frames per second [60; of a GIF 25]");
+  verb->add_option("--slow", o->slow, "How many times slower than true time [1]");
+  verb->add_option("--from", o->from, "Begin so long after the first frame, in s [0]");
+  verb->add_option("--for", o->seconds, "Show so much of the run, in s of true time [all]");
+  verb->add_option("--at", o->at, "When a still is taken, in s after the first frame [the middle]");
+  verb->add_option("--every", o->every, "Of a folder: true time between pictures, in s");
+  verb->add_option("--camera", o->camera,
+                   "lab; shell, which turns with it while gravity goes round; or ball:N, which follows ball N")
+      ->capture_default_str();
+  verb->add_option("--zoom", o->zoom, "How many times closer [1; 2 with ball:N]");
+  verb->add_option("--context", o->context, "What draws: osmesa, or egl (a graphics card where there is one)")
+      ->capture_default_str();
   verb->add_option("--colour", o->colour, "Colour of the balls: speed, size, spin or steel")->capture_default_str();
   verb->add_option("--overlay", o->overlay, "Any of toe,shoulder,tracks,velocity, or none")->capture_default_str();
   verb->add_flag("--mirror", o->plan.style.mirror, "See the mill from its other end: it turns clockwise");
@@ -104,10 +227,13 @@ void add_render(CLI::App& app) {
       ->capture_default_str();
   verb->add_option("--look-seed", o->look_seed, "Which light and materials the film theme takes")
       ->capture_default_str();
-  verb->add_option("--preset", o->plan.format.preset, "x264 preset, ultrafast to veryslow")->capture_default_str();
-  verb->add_option("--crf", o->plan.format.crf, "x264 quality, 0 (lossless) to 51")->capture_default_str();
+  verb->add_option("--preset", o->preset, "x264 preset, ultrafast to veryslow [veryfast]");
+  verb->add_option("--crf", o->crf, "Quality, 0 (lossless) to 51 (.mp4) or 63 (.webm) [20; 36]");
   add_common(*verb, *o);
-  verb->footer("Example: tumble render run.h5 -o film.mp4 --slow 4 --overlay toe,shoulder,tracks");
+  verb->footer(
+      "Examples: tumble render run.h5 -o film.mp4 --slow 4 --overlay toe,shoulder,tracks\n"
+      "          tumble render n50.h5 n70.h5 n90.h5 -o speeds.webm\n"
+      "          tumble render run.h5 -o still.svg --at 1.5");
   verb->callback([o] { render(*o); });
 }
 

@@ -53,7 +53,7 @@ void run(Options o) {
   truth.origin = run_file.string();
   o.plan.format.threads = o.threads;
   clock.lap();
-  render_run(reader, truth, o.plan, film_file, false, o);
+  render_run(reader, truth, o.plan, film_file, o);
   report.seconds_rendering = clock.lap();
 
   // The analyser is told what a laboratory knows of its mill: the drawing and the ball sizes. Speed and filling are

@@ -4,6 +4,8 @@
 #include <utility>
 #include <vector>
 
+#include "core/slow_motion.h"
+
 namespace tumble::cli {
 
 Frame RunPlayer::at(double time) {
@@ -12,7 +14,7 @@ Frame RunPlayer::at(double time) {
   const std::size_t i = after == times.begin() ? 0 : static_cast<std::size_t>(after - times.begin()) - 1;
   load(i);
   if (i + 1 >= times.size()) return a_;
-  return time - times[i] < 1e-9 ? a_ : between(a_, b_, time);
+  return time - times[i] < 1e-9 ? a_ : slow_motion(a_, b_, run_.setup().balls, time);
 }
 
 void RunPlayer::load(std::size_t i) {

@@ -54,7 +54,7 @@ void write_run(const Shown& s, const Stretch& stretch, const fs::path& file, dou
   plan.format.threads = options.threads;
   plan.from = stretch.from;
   plan.seconds = stretch.seconds;
-  render_run(*s.run, *s.motion, plan, file, false, options);
+  render_run(*s.run, *s.motion, plan, file, options);
 }
 
 void write_film(const Shown& s, const Stretch& stretch, const fs::path& file, double quality,

@@ -4,152 +4,247 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
-#include <exception>
-#include <fstream>
+#include <map>
 #include <memory>
+#include <mutex>
+#include <optional>
+#include <utility>
 #include <vector>
 
+#include "cli/picture_output.h"
 #include "cli/run_player.h"
-#include "core/angle.h"
 #include "core/error.h"
+#include "core/large_arrays.h"
 #include "core/parallel_for.h"
 #include "core/quantile.h"
+#include "io/drawing_file.h"
 #include "io/image_file.h"
-#include "io/output.h"
-#include "io/tracks_file.h"
+#include "render/sheet.h"
 
 namespace tumble::cli {
 namespace {
 
-// Top of the colour scale: what one ball in a hundred exceeds, so that a single impact does not darken the film.
-double scale_top(const io::RunReader& run, render::Colour colour) {
-  std::vector<double> values;
-  const std::size_t step = std::max<std::size_t>(1, run.frame_count() / 50);
-  for (std::size_t i = 0; i < run.frame_count(); i += step) {
-    const Frame f = run.frame(i);
-    for (std::size_t b = 0; b < f.x.size(); ++b)
-      values.push_back(colour == render::Colour::kSpin ? std::abs(f.spin[b]) : std::hypot(f.vx[b], f.vy[b]));
-  }
-  if (values.empty()) return 1;
-  return std::max(quantile_of(std::move(values), 0.99), 1e-3);
-}
-
-// HDF5's signature: a run file, even one cut short, is to be refused as a run file and not as a film.
-bool looks_like_hdf5(const fs::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  char head[8] = {};
-  return file.read(head, sizeof head) && std::memcmp(head, "\x89HDF\r\n\x1a\n", sizeof head) == 0;
-}
-
-struct Marks {
-  double toe_deg = kNotGiven, shoulder_deg = kNotGiven;
+struct Range {
+  double low = 0, high = 0;
 };
 
-Marks marks_at(const ChargeMotion& truth, double time, double frames_per_second) {
-  const auto i = static_cast<std::size_t>(std::lround(time * frames_per_second));
-  if (i >= truth.profile.size()) return {};
-  return {truth.profile[i].toe_deg, truth.profile[i].shoulder_deg};
+// The colour scale of all runs: up to what one ball in a hundred exceeds, so that a single impact does not darken the
+// film.
+Range scale_of(const std::vector<Shot>& shots, render::Colour colour) {
+  std::vector<double> values;
+  for (const Shot& shot : shots) {
+    const io::RunReader& run = *shot.run;
+    const std::vector<double>& radii = run.setup().balls.radius;
+    if (colour == render::Colour::kSize) values.insert(values.end(), radii.begin(), radii.end());
+    if (colour == render::Colour::kSize || colour == render::Colour::kSteel) continue;
+    const std::size_t step = std::max<std::size_t>(1, run.frame_count() / 50);
+    for (std::size_t i = 0; i < run.frame_count(); i += step) {
+      const Frame f = run.frame(i);
+      for (std::size_t b = 0; b < f.x.size(); ++b)
+        values.push_back(colour == render::Colour::kSpin ? std::abs(f.spin[b]) : std::hypot(f.vx[b], f.vy[b]));
+    }
+  }
+  if (values.empty()) return {0, 1};
+  if (colour == render::Colour::kSize) {
+    const auto [least, most] = std::minmax_element(values.begin(), values.end());
+    return {*least, *most};
+  }
+  return {0, std::max(quantile_of(std::move(values), 0.99), 1e-3)};
+}
+
+analysis::NextFrame frames_of(const io::RunReader& run) {
+  return [&run, next = std::size_t{0}](Frame& frame) mutable {
+    if (next >= run.frame_count()) return false;
+    frame = run.frame(next++);
+    return true;
+  };
+}
+
+constexpr std::size_t kMostWorkers = 16;
+
+// Frames of a film that are encoded by themselves, as many in each part but the last: few enough that several threads
+// have work in a short film and that a player can jump, enough that the key frames do not burden a long one (parts of
+// 48 make a film 5 % larger than one of a piece). Hangs on the film alone.
+std::size_t part_length(std::size_t frames) {
+  const std::size_t most = std::clamp<std::size_t>(frames / 16, 48, 240), parts = (frames + most - 1) / most;
+  return (frames + parts - 1) / parts;
+}
+
+// The marks of one run at its frame, and its torque.
+render::Moment moment_of(const Shot& shot, const Frame& frame) {
+  render::Moment moment;
+  moment.torque_time = shot.run->time();
+  moment.torque = shot.run->torque();
+  const double rate = shot.run->setup().config.run.frames_per_second;
+  const auto i = static_cast<std::size_t>(std::lround((frame.time - shot.run->time().front()) * rate));
+  if (!shot.truth || i >= shot.truth->profile.size()) return moment;
+  moment.toe_deg = shot.truth->profile[i].toe_deg;
+  moment.shoulder_deg = shot.truth->profile[i].shoulder_deg;
+  return moment;
+}
+
+// Runs played in step.
+class Players {
+ public:
+  explicit Players(const std::vector<Shot>& shots) : shots_(shots) {
+    for (const Shot& shot : shots) players_.emplace_back(*shot.run);
+  }
+  std::vector<Frame> at(double time) {  // after their beginnings
+    std::vector<Frame> frames;
+    for (std::size_t c = 0; c < shots_.size(); ++c) frames.push_back(players_[c].at(shots_[c].begin + time));
+    return frames;
+  }
+
+ private:
+  const std::vector<Shot>& shots_;
+  std::vector<RunPlayer> players_;
+};
+
+void check_view(const std::vector<Shot>& shots, const render::View& view) {
+  if (view.from != render::View::From::kBall) return;
+  for (const Shot& shot : shots) {
+    const std::size_t balls = shot.run->setup().balls.size();
+    if (view.ball >= balls)
+      throw InputError("--camera", fmt::format("follows ball {}, but there are balls 0 to {}", view.ball, balls - 1));
+  }
 }
 
 }  // namespace
 
 ChargeMotion measure_run(const io::RunReader& run, const CommonOptions& options) {
   ProgressLine line(options, "reading the run", "nothing was written");
-  std::size_t next = 0;
-  return analysis::measure_frames(
-      run.setup(),
-      [&](Frame& frame) {
-        if (next >= run.frame_count()) return false;
-        frame = run.frame(next++);
-        return true;
-      },
-      line.callback());
+  return analysis::measure_frames(run.setup(), frames_of(run), line.callback());
 }
 
-std::string picture_name(std::size_t index) { return fmt::format("frame_{:06}.png", index); }
+std::vector<ProfileRow> measure_run_edges(const io::RunReader& run, const CommonOptions& options) {
+  ProgressLine line(options, "reading the run", "nothing was written");
+  return analysis::measure_edges(run.setup(), frames_of(run), line.callback());
+}
 
-std::size_t render_run(const io::RunReader& run, const ChargeMotion& truth, const FilmPlan& plan,
-                       const fs::path& output, bool as_pictures, const CommonOptions& options) {
-  if (run.frame_count() == 0) throw InputError(truth.origin, "holds no frames; simulate for longer");
-  const double film_rate = double(plan.format.fps_numerator) / plan.format.fps_denominator;
-  const double start = run.time().front() + plan.from;
-  double span = run.time().back() - start;
-  if (!std::isnan(plan.seconds)) span = std::min(span, plan.seconds);
-  const double step = 1 / (film_rate * plan.style.slow);
-  const auto count = static_cast<std::size_t>(std::floor(span / step + 1e-6)) + 1;
-  const double top = scale_top(run, plan.style.colour);
-  const double stored_rate = run.setup().config.run.frames_per_second;
+std::size_t render_shots(const std::vector<Shot>& shots, const FilmPlan& plan, const fs::path& output,
+                         const CommonOptions& options) {
+  keep_large_arrays();
+  check_view(shots, plan.style.view);
+  const Timeline timeline = timeline_of(shots, plan);
+  const std::size_t count = timeline.count;
+  const Range scale = scale_of(shots, plan.style.colour);
+  std::vector<render::SheetMill> mills;
+  for (const Shot& shot : shots) mills.push_back({shot.run->setup(), shot.label});
+  const auto moments_of = [&](const std::vector<Frame>& frames, const std::vector<std::vector<Frame>>& past) {
+    std::vector<render::Moment> moments;
+    for (std::size_t c = 0; c < shots.size(); ++c) {
+      moments.push_back(moment_of(shots[c], frames[c]));
+      moments.back().past = past[c];
+    }
+    return moments;
+  };
 
-  // Several renderers draw a batch of frames side by side; then the batch is written in order.
-  const std::size_t workers = std::min<std::size_t>(static_cast<std::size_t>(thread_limit()), 8);
-  constexpr std::size_t kEach = 4;
-  std::vector<std::unique_ptr<render::Renderer>> renderers;
-  for (std::size_t w = 0; w < workers; ++w) {
-    renderers.push_back(std::make_unique<render::Renderer>(run.setup(), plan.style));
-    renderers.back()->set_scale(0, top);
+  // Trails show a fixed stretch of true time: so many pictures before each. A still takes them as a film would.
+  const double before_step = timeline.step > 0 ? timeline.step : 1.0 / 240;
+  const auto trail_of = [&](const render::Sheet& sheet) {
+    return plan.style.overlay.tracks ? static_cast<std::size_t>(std::ceil(sheet.trail_seconds() / before_step)) : 0;
+  };
+  // What lies before a picture, oldest first, as far as the runs go; by run.
+  const auto frames_before = [&](Players& players, std::size_t picture, std::size_t trail) {
+    std::vector<std::vector<Frame>> past(shots.size());
+    for (std::size_t k = trail; k >= 1; --k) {
+      const double then = timeline.first + (static_cast<double>(picture) - static_cast<double>(k)) * before_step;
+      if (then < -1e-9) continue;
+      std::vector<Frame> frames = players.at(then);
+      for (std::size_t c = 0; c < shots.size(); ++c) past[c].push_back(std::move(frames[c]));
+    }
+    return past;
+  };
+
+  if (output_kind(output) == OutputKind::kDrawing) {
+    render::Sheet sheet(mills, plan.style);
+    sheet.set_scale(scale.low, scale.high);
+    Players players(shots);
+    const std::vector<std::vector<Frame>> past = frames_before(players, 0, trail_of(sheet));
+    const std::vector<Frame> frames = players.at(timeline.first);
+    const Drawing drawing = sheet.sketch(frames, moments_of(frames, past), timeline.first);
+    output.extension() == ".svg" ? io::write_svg(output, drawing) : io::write_pdf(output, drawing);
+    return 1;
   }
-  std::unique_ptr<io::FilmWriter> film;
-  if (!as_pictures) film = std::make_unique<io::FilmWriter>(output.string(), plan.format);
 
+  PictureOutput pictures(output, plan.format);
   ProgressLine line(options, "rendering", "nothing was written under " + output.string());
   const Progress progress = line.callback();
-  RunPlayer player(run);
-  // Trails show a fixed stretch of true time: so many film frames before each.
-  const std::size_t trail =
-      plan.style.overlay.tracks ? static_cast<std::size_t>(std::ceil(renderers[0]->trail_seconds() / step)) : 0;
-  std::vector<Image> images(workers * kEach);
-  std::vector<Frame> frames(workers * kEach);
-  for (std::size_t from = 0; from < count; from += images.size()) {
-    report(progress, double(from) / double(count));
-    const std::size_t n = std::min(images.size(), count - from);
-    std::vector<Frame> before;  // for trails: the film frames before this batch, then the batch itself
-    if (trail > 0)
-      for (std::size_t k = from > trail ? from - trail : 0; k < from; ++k)
-        before.push_back(player.at(start + double(k) * step));
-    const std::size_t lead = before.size();
-    for (std::size_t i = 0; i < n; ++i) frames[i] = player.at(start + double(from + i) * step);
-    if (trail > 0) before.insert(before.end(), frames.begin(), frames.begin() + static_cast<std::ptrdiff_t>(n));
 
-    parallel_for(workers, 1, [&](std::size_t w, std::size_t) {
-      for (std::size_t i = w * kEach; i < std::min(n, (w + 1) * kEach); ++i) {
-        const Marks marks = marks_at(truth, frames[i].time - run.time().front(), stored_rate);
-        render::Moment moment{marks.toe_deg, marks.shoulder_deg, run.time(), run.torque(), {}};
-        if (trail > 0) {
-          const std::size_t here = lead + i, first = here > trail ? here - trail : 0;
-          moment.past = std::span<const Frame>(before).subspan(first, here - first);
-        }
-        images[i] = renderers[w]->draw(frames[i], moment);
-      }
-    });
-    for (std::size_t i = 0; i < n; ++i) {
-      if (film)
-        film->write(images[i]);
-      else
-        io::write_png((output / picture_name(from + i)).string(), images[i]);
+  // Each thread takes the next part of the film, draws and encodes it all, and puts it behind those that are ready.
+  const std::size_t length = pictures.can_be_cut() ? part_length(count) : count;
+  const std::size_t workers =
+      std::min({static_cast<std::size_t>(thread_limit()), (count + length - 1) / length, kMostWorkers});
+  std::mutex mutex;  // of all that follows
+  std::size_t next = 0, drawn = 0;
+  bool failed = false;
+  std::map<std::size_t, io::FilmPart> ready;  // by its first frame
+  std::size_t appended = 0;
+  const auto take = [&] {
+    const std::lock_guard lock(mutex);
+    return failed ? count : std::exchange(next, std::min(count, next + length));
+  };
+  const auto tell = [&] {
+    const std::lock_guard lock(mutex);
+    report(progress, double(drawn++) / double(count));
+    return !failed;
+  };
+  const auto deliver = [&](std::size_t first, io::FilmPart part) {
+    const std::lock_guard lock(mutex);
+    ready.emplace(first, std::move(part));
+    for (auto it = ready.find(appended); it != ready.end(); it = ready.find(appended)) {
+      pictures.film()->append(std::move(it->second));
+      ready.erase(it);
+      appended = std::min(count, appended + length);
     }
-  }
-  if (film) film->finish();
+  };
+
+  const auto draw_parts = [&] {
+    render::Sheet sheet(mills, plan.style);
+    sheet.set_scale(scale.low, scale.high);
+    Players players(shots);
+    const std::size_t trail = trail_of(sheet);
+    for (std::size_t first = take(); first < count; first = take()) {
+      std::vector<std::vector<Frame>> past = frames_before(players, first, trail);
+      std::optional<io::FilmPart> part;
+      if (pictures.film()) part = pictures.film()->part(static_cast<std::int64_t>(first));
+      for (std::size_t i = first; i < std::min(count, first + length); ++i) {
+        if (!tell()) return;
+        std::vector<Frame> frames = players.at(timeline.at(i));
+        const Image& image = sheet.draw(frames, moments_of(frames, past), timeline.at(i));
+        if (part)
+          part->write(image);
+        else
+          pictures.put(i, image);
+        if (trail == 0) continue;
+        for (std::size_t c = 0; c < shots.size(); ++c) {
+          if (past[c].size() == trail) past[c].erase(past[c].begin());
+          past[c].push_back(std::move(frames[c]));
+        }
+      }
+      if (!part) continue;
+      part->finish();
+      deliver(first, std::move(*part));
+    }
+  };
+  parallel_for(workers, 1, [&](std::size_t, std::size_t) {
+    try {
+      draw_parts();
+    } catch (...) {
+      const std::lock_guard lock(mutex);
+      failed = true;  // the others leave too
+      throw;
+    }
+  });
+  pictures.finish();
   report(progress, 1);
   return count;
 }
 
-ChargeMotion measure(const fs::path& input, const analysis::TracksOptions& film, const CommonOptions& options) {
-  std::error_code error;
-  if (!fs::exists(input, error))
-    throw InputError(input.string(), "does not exist; give a film, a folder or a run file");
-  ChargeMotion motion;
-  if (looks_like_hdf5(input)) {
-    motion = measure_run(io::RunReader(input), options);
-  } else if (input.extension() == ".csv") {
-    motion = analysis::measure_tracks(io::read_pixel_tracks(input), film);
-  } else {
-    ProgressLine line(options, "reading the film", "nothing was written");
-    motion = fs::is_directory(input, error) ? analysis::measure_stills(input.string(), film, line.callback())
-                                            : analysis::measure_film(input.string(), film, line.callback());
-  }
-  motion.origin = input.string();
-  return motion;
+std::size_t render_run(const io::RunReader& run, const ChargeMotion& truth, const FilmPlan& plan,
+                       const fs::path& output, const CommonOptions& options) {
+  if (run.frame_count() == 0) throw InputError(truth.origin, "holds no frames; simulate for longer");
+  return render_shots({{&run, &truth, "", run.time().front()}}, plan, output, options);
 }
 
 }  // namespace tumble::cli

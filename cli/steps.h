@@ -1,14 +1,12 @@
 #pragma once
 #include <filesystem>
-#include <functional>
-#include <string>
+#include <vector>
 
 #include "analysis/charge_motion.h"
 #include "cli/console.h"
+#include "cli/film_plan.h"
 #include "core/charge_motion.h"
-#include "io/film_file.h"
 #include "io/run_file.h"
-#include "render/renderer.h"
 
 // The steps of the one path that have to do with pictures, each from files to files, shared by the verbs and by `tumble
 // run` that strings them up.
@@ -19,20 +17,16 @@ namespace fs = std::filesystem;
 // The charge's true motion, from a run file.
 ChargeMotion measure_run(const io::RunReader& run, const CommonOptions& options);
 
-struct FilmPlan {
-  render::Style style;
-  io::FilmFormat format;
-  // What of the run is shown: after its first frame [s]; not given: all of it.
-  double from = 0, seconds = kNotGiven;
-};
+// Of it, toe and shoulder frame by frame: what their marks need.
+std::vector<ProfileRow> measure_run_edges(const io::RunReader& run, const CommonOptions& options);
 
-// Of a PNG in a folder of pictures: frame_000000.png.
-std::string picture_name(std::size_t index);
-
-// Renders a run as a film (`output` is a file) or as numbered PNGs (`output` is a folder that exists). `truth` gives
-// the toe and shoulder marks. Returns the number of pictures.
+// Renders runs, side by side where there are several, as what `output` is by its name (cli/picture_output.h). Returns
+// the number of pictures.
+std::size_t render_shots(const std::vector<Shot>& shots, const FilmPlan& plan, const fs::path& output,
+                         const CommonOptions& options);
+// One run.
 std::size_t render_run(const io::RunReader& run, const ChargeMotion& truth, const FilmPlan& plan,
-                       const fs::path& output, bool as_pictures, const CommonOptions& options);
+                       const fs::path& output, const CommonOptions& options);
 
 // The one door for all inputs: run file, folder of stills, film, tracks in pixels (.csv). What only tracks need is not
 // looked at for others.

@@ -1,4 +1,5 @@
 #pragma once
+#include <cstdint>
 #include <memory>
 #include <string>
 
@@ -9,13 +10,42 @@ namespace tumble::io {
 struct FilmFormat {
   int width = 1280, height = 720;  // [px], even
   int fps_numerator = 60, fps_denominator = 1;
-  std::string preset = "veryfast";  // x264's
-  double crf = 20;                  // x264's constant rate factor, 0 to 51
-  int threads = 0;                  // 1: encode inside write(); else beside it, in a thread of the writer's own
+  std::string preset = "veryfast";  // x264's; the others have none
+  double crf = 20;                  // constant rate factor, 0 (lossless) to 51 (x264) or 63 (VP9); GIF has none
+  int threads = 0;                  // 1: write() encodes; else a thread of the writer's own beside it
 };
 
-// H.264 in MP4: yuv420p, bt709, index in front (faststart). Bytes do not depend on the number of threads.
+// A stretch of a film that is encoded by itself: it begins with a key frame and asks nothing of its neighbours.
+class FilmPart {
+ public:
+  FilmPart(FilmPart&&) noexcept;
+  FilmPart& operator=(FilmPart&&) noexcept;
+  ~FilmPart();
+
+  void write(const Image& image);
+  void finish();  // after its last picture
+
+ private:
+  friend class FilmWriter;
+  struct Impl;
+  explicit FilmPart(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
+// What a film of this name is unless something else is wished: .mp4 (H.264), .webm (VP9), .gif. Throws InputError for
+// any other name.
+FilmFormat usual_format(const std::string& path);
+bool is_film_name(const std::string& path);
+// Whether its parts may be coded apart from one another; a GIF is one part, for its colours are chosen once.
+bool can_be_cut(const std::string& path);
+
+// The coding follows the name. H.264 in MP4 and VP9 in WebM: yuv420p, bt709, index in front (faststart). GIF: for ever
+// again from the start, in the 255 colours that suit its first pictures. Bytes do not depend on the number of threads.
 // Written beside `path` and renamed by finish(); a writer that is destroyed unfinished leaves nothing.
+//
+// Pictures come in one by one to write(), or part by part: part() may be called and its parts filled by several
+// threads at a time; append() takes finished parts in the film's order, one at a time. Where the parts are cut
+// changes the bytes, so that must not hang on the number of threads.
 class FilmWriter {
  public:
   FilmWriter(const std::string& path, const FilmFormat& format);
@@ -24,6 +54,10 @@ class FilmWriter {
   FilmWriter& operator=(const FilmWriter&) = delete;
 
   void write(const Image& image);
+
+  FilmPart part(std::int64_t first_frame);  // counted from the film's beginning
+  void append(FilmPart part);
+
   void finish();
 
  private:

@@ -1,7 +1,11 @@
 #include "render/charge_view.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+
+#include "core/units.h"
 
 namespace tumble::render {
 namespace {
@@ -12,6 +16,16 @@ constexpr std::size_t kTrailPoints = 24;                  // corners of one trai
 }  // namespace
 
 const Palette& ColourScale::palette() const { return by == Colour::kSpin ? diverging_palette() : sequential_palette(); }
+
+void ColourScale::set_ends(double from, double to) {
+  if (by == Colour::kSpin) {  // pale is zero
+    high = std::max(std::abs(from), std::abs(to));
+    low = -high;
+  } else if (by != Colour::kSteel) {
+    low = from;
+    high = to;
+  }
+}
 
 Rgba ColourScale::colour_of(double value) const {
   if (by == Colour::kSteel || std::isnan(value)) return ink::kSteel;
@@ -48,13 +62,15 @@ void draw_balls(Canvas& canvas, const Balls& balls, const Frame& frame, const Co
 }
 
 void draw_trails(Canvas& canvas, const Balls& balls, const Frame& frame, std::span<const Frame> past, double seconds,
-                 const ColourScale& scale) {
+                 const ColourScale& scale, const std::function<Camera(const Frame&)>& camera_then) {
   const Camera& camera = canvas.layout.camera;
   std::size_t first = past.size();
   while (first > 0 && past[first - 1].time > frame.time - seconds) --first;
   const auto recent = past.subspan(first);
   if (recent.empty()) return;
   const std::size_t stride = (recent.size() + kTrailPoints - 1) / kTrailPoints;
+  std::vector<Camera> cameras;
+  for (std::size_t k = 0; k < recent.size(); k += stride) cameras.push_back(camera_then(recent[recent.size() - 1 - k]));
   for (std::size_t i = 0; i < frame.x.size(); ++i) {
     const double widest = std::clamp(0.34 * balls.radius[i] * camera.pixels_per_metre, 0.5, canvas.px(3.2));
     Vec2 to = camera.image_from_mill(frame.x[i], frame.y[i]);
@@ -63,12 +79,22 @@ void draw_trails(Canvas& canvas, const Balls& balls, const Frame& frame, std::sp
       const Frame& then = recent[recent.size() - 1 - k];
       if (then.x.size() != frame.x.size()) break;
       const double age = (frame.time - then.time) / seconds;
-      const Vec2 from = camera.image_from_mill(then.x[i], then.y[i]);
+      const Vec2 from = cameras[k / stride].image_from_mill(then.x[i], then.y[i]);
       const Rgba colour = scale.colour_of(coloured_value(scale.by, balls, then, i));
       canvas.meshes.line(from, to, widest * (1 - 0.6 * age), with_alpha(colour, 0.75 * std::max(0.0, 1 - age)));
       to = from;
     }
   }
+}
+
+void draw_followed(Canvas& canvas, const Balls& balls, const Frame& frame, std::size_t ball) {
+  const Camera& camera = canvas.layout.camera;
+  const double inner = balls.radius[ball] * camera.pixels_per_metre + canvas.px(2);
+  canvas.meshes.ring(camera.image_from_mill(frame.x[ball], frame.y[ball]), inner, inner + canvas.stroke(2.4), 0,
+                     2 * kPi, ink::kAccent);
+  const Vec2 beside = camera.image_from_mill(frame.x[ball], frame.y[ball]) +
+                      Vec2(0.75 * inner + canvas.px(4), -0.75 * inner - canvas.px(4));
+  canvas.text.add(fmt::format("ball {}", ball), beside.x(), beside.y(), {canvas.letter(12.5), ink::kAccent});
 }
 
 void draw_arrow(Canvas& canvas, const Vec2& a, const Vec2& b, double width, Rgba colour) {
@@ -92,7 +118,8 @@ void draw_velocities(Canvas& canvas, const Balls& balls, const Frame& frame, dou
   for (std::size_t i = 0; i < frame.x.size(); ++i) {
     const double radius = balls.radius[i] * camera.pixels_per_metre;
     const Vec2 from = camera.image_from_mill(frame.x[i], frame.y[i]);
-    const Vec2 to = camera.image_from_mill(frame.x[i] + seconds * frame.vx[i], frame.y[i] + seconds * frame.vy[i]);
+    const double vx = frame.vx[i] + camera.turning * frame.y[i], vy = frame.vy[i] - camera.turning * frame.x[i];
+    const Vec2 to = camera.image_from_mill(frame.x[i] + seconds * vx, frame.y[i] + seconds * vy);
     draw_arrow(canvas, from, to, std::clamp(0.13 * radius, 0.7, canvas.px(2.0)), ink::kText);
   }
 }

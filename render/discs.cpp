@@ -13,7 +13,7 @@ flat out vec4 disc_look;
 flat out vec4 disc_colour;
 void main() {
   vec2 corner = vec2(gl_VertexID & 1, gl_VertexID >> 1) * 2.0 - 1.0;
-  offset = corner * (circle.z + 1.0);
+  offset = corner * (circle.z + 0.5);  // as far as anything is covered
   radius = circle.z;
   disc_look = look;
   disc_colour = colour;
@@ -72,12 +72,15 @@ Discs::Discs(int width, int height) : pipeline_(make_pipeline(kVertex, kFragment
 }
 
 void Discs::add(const Disc& disc) {
+  if (recorder_.is_on())
+    return recorder_.add(Drawing::Ball{disc.centre, disc.radius, disc.colour, disc.mark, disc.mark_strength});
   const auto f = [](double value) { return static_cast<float>(value); };
   instances_.push_back({f(disc.centre.x()), f(disc.centre.y()), f(disc.radius), f(disc.mark.x()), f(disc.mark.y()),
                         f(disc.mark_strength), f(disc.gloss), disc.colour});
 }
 
 void Discs::flush() {
+  if (recorder_.is_on()) return recorder_.flush();
   if (instances_.empty()) return;
   glUseProgram(pipeline_.program);
   glBindVertexArray(pipeline_.vertex_array);

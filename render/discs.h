@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "render/palette.h"
+#include "render/recorder.h"
 #include "render/shader.h"
 
 namespace tumble::render {
@@ -24,6 +25,7 @@ class Discs {
   Discs(int width, int height);
   void add(const Disc& disc);  // drawn by the next flush(), in the order of adding
   void flush();
+  void record_into(Drawing* drawing) { recorder_.record_into(drawing); }  // instead of drawing
 
  private:
   struct Instance {
@@ -31,6 +33,7 @@ class Discs {
     Rgba colour;
   };
   Pipeline pipeline_;
+  Recorder recorder_;
   std::vector<Instance> instances_;
 };
 

@@ -53,7 +53,24 @@ void Meshes::vertex(const Vec2& p, Rgba colour) {
   vertices_.push_back({static_cast<float>(p.x()), static_cast<float>(p.y()), premultiplied});
 }
 
+// A drawing's shapes are of one colour.
+void Meshes::record_polygon(std::span<const Vec2> corners, std::span<const Rgba> colours, bool has_neighbours) {
+  double r = 0, g = 0, b = 0, a = 0;
+  for (const Rgba& c : colours) {
+    r += c.r;
+    g += c.g;
+    b += c.b;
+    a += c.a;
+  }
+  const auto mean = [n = static_cast<double>(colours.size())](double sum) {
+    return static_cast<std::uint8_t>(std::lround(sum / n));
+  };
+  recorder_.add(
+      Drawing::Polygon{{corners.begin(), corners.end()}, {mean(r), mean(g), mean(b), mean(a)}, has_neighbours});
+}
+
 void Meshes::triangle(const Vec2& a, const Vec2& b, const Vec2& c, Rgba at_a, Rgba at_b, Rgba at_c) {
+  if (recorder_.is_on()) return record_polygon({{a, b, c}}, {{at_a, at_b, at_c}}, true);
   vertex(a, at_a);
   vertex(b, at_b);
   vertex(c, at_c);
@@ -66,10 +83,13 @@ void Meshes::quad(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d, Rg
 }
 
 void Meshes::rectangle(double left, double top, double right, double bottom, Rgba colour) {
+  if (recorder_.is_on())
+    return record_polygon({{{left, top}, {right, top}, {right, bottom}, {left, bottom}}}, {{colour}}, true);
   quad({left, top}, {right, top}, {right, bottom}, {left, bottom}, colour, colour, colour, colour);
 }
 
 void Meshes::convex(std::span<const Vec2> corners, std::span<const Rgba> colours) {
+  if (recorder_.is_on()) return record_polygon(corners, colours, false);
   const std::size_t n = corners.size();
   const double sense = signed_area(corners) > 0 ? -1.0 : 1.0;  // outward is to this side of an edge
   const auto normal = [&](std::size_t i) -> Vec2 {
@@ -95,6 +115,7 @@ void Meshes::convex(std::span<const Vec2> corners, Rgba colour) {
 
 void Meshes::line(const Vec2& a, const Vec2& b, double width, Rgba at_a, Rgba at_b) {
   if ((b - a).squaredNorm() < 1e-12) return;
+  if (recorder_.is_on()) return recorder_.add(Drawing::Stroke{{a, b}, width, mix(at_a, at_b, 0.5)});
   const Vec2 side = left_of((b - a).normalized());
   const double solid = std::max(width / 2 - kFeather, 0.0), reach = std::max(width / 2, kFeather) + kFeather;
   const double strength = std::min(width, 1.0);  // a line thinner than a pixel is a paler one
@@ -107,6 +128,7 @@ void Meshes::line(const Vec2& a, const Vec2& b, double width, Rgba at_a, Rgba at
 
 void Meshes::polyline(std::span<const Vec2> points, double width, Rgba colour) {
   if (points.size() < 2) return;
+  if (recorder_.is_on()) return recorder_.add(Drawing::Stroke{{points.begin(), points.end()}, width, colour});
   const double solid = std::max(width / 2 - kFeather, 0.0), reach = std::max(width / 2, kFeather) + kFeather;
   const Rgba full = with_alpha(colour, std::min(width, 1.0)), none = with_alpha(colour, 0);
   const auto side_of = [&](std::size_t i) -> Vec2 {
@@ -129,6 +151,11 @@ void Meshes::polyline(std::span<const Vec2> points, double width, Rgba colour) {
 
 void Meshes::ring(const Vec2& centre, double inner, double outer, double from, double to,
                   const std::function<Rgba(double)>& colour_inner, const std::function<Rgba(double)>& colour_outer) {
+  if (recorder_.is_on()) {
+    const double middle = (from + to) / 2;
+    return recorder_.add(
+        Drawing::Ring{centre, inner, outer, from, to, mix(colour_inner(middle), colour_outer(middle), 0.5)});
+  }
   // Chords whose sagitta stays below a twentieth of a pixel.
   const double step = 2 * std::acos(1 - std::min(0.05 / std::max(outer, 1.0), 0.5));
   const int n = std::max(1, static_cast<int>(std::ceil(std::abs(to - from) / step)));
@@ -156,6 +183,7 @@ void Meshes::ring(const Vec2& centre, double inner, double outer, double from, d
 }
 
 void Meshes::flush() {
+  if (recorder_.is_on()) return recorder_.flush();
   if (vertices_.empty()) return;
   glUseProgram(pipeline_.program);
   glBindVertexArray(pipeline_.vertex_array);

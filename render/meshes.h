@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "render/palette.h"
+#include "render/recorder.h"
 #include "render/shader.h"
 
 namespace tumble::render {
@@ -33,6 +34,7 @@ class Meshes {
   void ring(const Vec2& centre, double inner, double outer, double from, double to, Rgba colour);
 
   void flush();
+  void record_into(Drawing* drawing) { recorder_.record_into(drawing); }  // instead of drawing
 
  private:
   struct Vertex {
@@ -40,9 +42,11 @@ class Meshes {
     Rgba colour;  // premultiplied
   };
   void vertex(const Vec2& p, Rgba colour);
+  void record_polygon(std::span<const Vec2> corners, std::span<const Rgba> colours, bool has_neighbours);
   void quad(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d, Rgba at_a, Rgba at_b, Rgba at_c, Rgba at_d);
 
   Pipeline pipeline_;
+  Recorder recorder_;
   std::vector<Vertex> vertices_;
 };
 

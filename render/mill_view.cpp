@@ -135,7 +135,7 @@ void draw_bolts(Canvas& canvas, const MillShape& shape, double mill_angle) {
 
 void draw_shell(Canvas& canvas, const MillShape& shape) {
   const Camera& camera = canvas.layout.camera;
-  const Vec2 centre(camera.centre_u, camera.centre_v);
+  const Vec2 centre = camera.axis();
   const double radius = shape.radius * camera.pixels_per_metre;
   const double outer = radius * kRimShare, liner = radius * kLinerShare;
   auto& m = canvas.meshes;

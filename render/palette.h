@@ -2,11 +2,9 @@
 #include <cstdint>
 #include <span>
 
-namespace tumble::render {
+#include "core/drawing.h"
 
-struct Rgba {  // sRGB, not premultiplied
-  std::uint8_t r = 0, g = 0, b = 0, a = 255;
-};
+namespace tumble::render {
 
 Rgba with_alpha(Rgba colour, double alpha);   // alpha in [0, 1], times the colour's own
 Rgba mix(Rgba a, Rgba b, double share);       // share of b in [0, 1], channel by channel

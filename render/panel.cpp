@@ -70,8 +70,9 @@ void draw_colour_bar(Canvas& canvas, double left, double right, double top, cons
   const double bottom = top + canvas.px(kBarHeight);
   const int steps = std::max(2, static_cast<int>(right - left));
   for (int i = 0; i < steps; ++i) {
-    const double x0 = left + (right - left) * i / steps, x1 = left + (right - left) * (i + 1) / steps;
-    canvas.meshes.rectangle(x0, top, x1, bottom, scale.palette().at((i + 0.5) / steps));
+    // Up to the bar's end, to be painted over by the next step: no seams between them.
+    canvas.meshes.rectangle(left + (right - left) * i / steps, top, right, bottom,
+                            scale.palette().at((i + 0.5) / steps));
   }
   const TextStyle label = quiet(canvas, 12, Align::kCentre);
   for (const Tick& tick : ticks(scale.low, scale.high, 5)) {
@@ -126,6 +127,7 @@ int decimals(double mean) {
 }  // namespace
 
 std::string time_note(double slow) {
+  if (std::isnan(slow)) return "";
   if (std::abs(slow - 1) < 5e-3) return "true time";
   const auto factor = [](double f) {  // 3.3, 10, 0.25: two digits, no idle zeros
     return f < 9.95 ? fmt::format("{:g}", std::round(f * 10) / 10) : fmt::format("{:.0f}", f);
@@ -199,19 +201,23 @@ void draw_still_panel(Canvas& canvas, const Panel& panel, bool pale) {
     draw_torque_curve(canvas, *panel.plot, panel.trace, pale);
   }
 
-  const ColourScale& scale = panel.scale;
+  const auto& radii = panel.setup.balls.radius;
+  draw_colour_scale(canvas, plan.left, plan.right, plan.bar_top, panel.scale, {radii.begin(), radii.end()});
+}
+
+void draw_colour_scale(Canvas& canvas, double left, double right, double top, const ColourScale& scale,
+                       const std::set<double>& radii) {
   if (scale.by == Colour::kSteel) return;
-  text.add(title_of(scale.by), plan.left, plan.bar_title, {canvas.letter(13), ink::kText});
-  const std::set<double> radii(panel.setup.balls.radius.begin(), panel.setup.balls.radius.end());
+  canvas.text.add(title_of(scale.by), left, top - canvas.px(11), {canvas.letter(13), ink::kText});
   if (scale.by == Colour::kSize && radii.size() <= 6) {
-    draw_classes(canvas, plan.left, plan.right, plan.bar_top, scale, radii);
+    draw_classes(canvas, left, right, top, scale, radii);
   } else {
     ColourScale shown = scale;
     if (scale.by == Colour::kSize) {
       shown.low *= 1000;
       shown.high *= 1000;
     }
-    draw_colour_bar(canvas, plan.left, plan.right, plan.bar_top, shown);
+    draw_colour_bar(canvas, left, right, top, shown);
   }
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 #include <optional>
+#include <set>
 #include <string>
 
 #include "core/frame.h"
@@ -26,7 +27,11 @@ std::optional<TorquePlot> place_torque_plot(Canvas& canvas, const TorqueTrace& t
 void draw_still_panel(Canvas& canvas, const Panel& panel, bool pale);
 void draw_moving_panel(Canvas& canvas, const Panel& panel, const Frame& frame);
 
-// How time runs in the film, in words: "true time", "3.3 x slower".
+// Title, bar and ticks; by size, one ball of each where there are few kinds. Nothing by steel.
+void draw_colour_scale(Canvas& canvas, double left, double right, double top, const ColourScale& scale,
+                       const std::set<double>& radii);
+
+// How time runs in the film, in words: "true time", "3.3 x slower"; nothing for a still.
 std::string time_note(double slow);
 
 // The panel's first two lines.

@@ -29,7 +29,7 @@ const Style& checked(const Style& style) {
     throw InputError("size", fmt::format("{}x{} cannot be a picture; width and height must be even and from {} to {}",
                                          style.width, style.height, kSmallestSize, kLargestSize));
   }
-  if (!(style.slow > 0)) throw InputError("slow", fmt::format("{} must be above 0", style.slow));
+  if (style.slow <= 0) throw InputError("slow", fmt::format("{} must be above 0", style.slow));
   return style;
 }
 
@@ -58,30 +58,30 @@ struct Renderer::Impl {
       : setup(run),
         style(checked(wanted)),
         shape(make_mill_shape(run.config)),
-        context(style.width, style.height),
+        context(style.width, style.height, style.context),
         scale(first_scale(run, style)) {
     const CurrentContext current(context);
-    canvas = std::make_unique<Canvas>(style.width, style.height,
-                                      make_layout(style.width, style.height, shape, style.overlay.text, style.mirror));
+    canvas = std::make_unique<Canvas>(
+        style.width, style.height,
+        make_layout(style.width, style.height, shape, style.overlay.text, style.mirror, style.view.zoom));
+    layout = canvas->layout;
     coming = std::make_unique<StillLayer>(style.width, style.height);
     been = std::make_unique<StillLayer>(style.width, style.height);
-    glViewport(0, 0, style.width, style.height);
-    glEnable(GL_BLEND);
-    glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);  // colours are premultiplied
-    glDisable(GL_DEPTH_TEST);
-    glDisable(GL_DITHER);
   }
 
-  void flush() {
-    canvas->meshes.flush();
-    canvas->discs.flush();
-    canvas->text.flush();
-  }
   Panel panel() const { return {setup, trace, plot, scale, style.slow}; }
   double trail_seconds() const { return 1.2 * natural_time(); }
   double arrow_seconds() const { return 0.11 * natural_time(); }
   double natural_time() const { return std::sqrt(shape.radius / kGravity); }  // of a fall in this mill [s]
 
+  void draw_scale();
+
+  Box past_of_plot(const Frame& frame) const {
+    return {plot->box.left, plot->box.top, std::min(plot->x_of(frame.time), plot->box.right), plot->box.bottom};
+  }
+
+  void draw_still(bool pale);
+  void draw_moving(const Frame& frame, const Moment& moment);
   void paint_still(StillLayer& layer, bool pale);
   void paint_still_layers(const Moment& moment);
 
@@ -93,21 +93,32 @@ struct Renderer::Impl {
   TorqueTrace trace;
   std::optional<TorquePlot> plot;
   bool is_painted = false;  // the still layers, for the scale and trace above
+  Layout layout;            // the canvas' own, but for the camera of the frame
   std::unique_ptr<Canvas> canvas;
   std::unique_ptr<StillLayer> coming, been;  // with the torque's curve pale, and bright
 };
 
-void Renderer::Impl::paint_still(StillLayer& layer, bool pale) {
-  const auto share = [](std::uint8_t channel) { return static_cast<float>(channel) / 255.0f; };
-  glClearColor(share(ink::kGround.r), share(ink::kGround.g), share(ink::kGround.b), 1.0f);
-  glClear(GL_COLOR_BUFFER_BIT);
-  draw_shell(*canvas, shape);
+void Renderer::Impl::draw_scale() {
+  const bool is_over_mill = style.view.is_cut();
+  const Box& box = is_over_mill ? layout.view : layout.picture;
+  draw_scale_bar(*canvas, {box.left + canvas->px(28), box.bottom - canvas->px(30)}, shape.radius,
+                 style.overlay.velocity ? arrow_seconds() : kNotGiven, is_over_mill);
+}
+
+void Renderer::Impl::draw_still(bool pale) {
+  canvas->layout.camera = layout.camera;
+  if (!style.view.is_cut()) draw_shell(*canvas, shape);
   if (style.overlay.text) {
-    draw_rotation(*canvas, shape, setup.mill_speed);
-    draw_scale_bar(*canvas, shape, style.overlay.velocity ? arrow_seconds() : kNotGiven);
+    if (style.view.from == View::From::kLab && !style.view.is_cut()) draw_rotation(*canvas, shape, setup.mill_speed);
+    if (!style.view.is_cut()) draw_scale();
     draw_still_panel(*canvas, panel(), pale);
   }
-  flush();
+  canvas->flush();
+}
+
+void Renderer::Impl::paint_still(StillLayer& layer, bool pale) {
+  canvas->paint_ground();
+  draw_still(pale);
   layer.capture();
 }
 
@@ -127,43 +138,74 @@ Renderer::Renderer(const RunSetup& setup, const Style& style) : impl_(std::make_
 Renderer::~Renderer() = default;
 
 void Renderer::set_scale(double low, double high) {
-  ColourScale& scale = impl_->scale;
-  if (scale.by == Colour::kSpeed) {
-    scale.low = low;
-    scale.high = high;
-  } else if (scale.by == Colour::kSpin) {  // pale is zero
-    scale.high = std::max(std::abs(low), std::abs(high));
-    scale.low = -scale.high;
-  }
+  impl_->scale.set_ends(low, high);
   impl_->is_painted = false;
 }
 
 double Renderer::trail_seconds() const { return impl_->trail_seconds(); }
 
+void Renderer::Impl::draw_moving(const Frame& frame, const Moment& moment) {
+  const Overlay& overlay = style.overlay;
+  const View& view = style.view;
+  const Camera camera = camera_of(layout, view, frame, setup.mill_speed);
+  // Trails are paths in the laboratory, or against the shell; against a ball they would lead through the steel.
+  const auto camera_then = [&](const Frame& then) {
+    return view.from == View::From::kShell ? camera_of(layout, view, then, setup.mill_speed) : camera;
+  };
+  canvas->layout.camera = camera;
+  if (view.is_cut()) {
+    canvas->clip(layout.view);
+    draw_shell(*canvas, shape);
+  }
+  draw_lifters(*canvas, shape, frame.mill_angle);
+  if (overlay.tracks) draw_trails(*canvas, setup.balls, frame, moment.past, trail_seconds(), scale, camera_then);
+  canvas->meshes.flush();
+  draw_balls(*canvas, setup.balls, frame, scale);
+  canvas->discs.flush();
+  if (overlay.velocity) draw_velocities(*canvas, setup.balls, frame, arrow_seconds());
+  draw_toe_and_shoulder(*canvas, shape, overlay.toe ? moment.toe_deg : kNotGiven,
+                        overlay.shoulder ? moment.shoulder_deg : kNotGiven);
+  if (view.from == View::From::kBall) draw_followed(*canvas, setup.balls, frame, view.ball);
+  if (view.from == View::From::kShell) draw_gravity(*canvas);
+  if (view.is_cut()) {
+    if (overlay.text) draw_scale();
+    canvas->flush();
+    canvas->unclip();
+  }
+  if (overlay.text) draw_moving_panel(*canvas, panel(), frame);
+  canvas->flush();
+}
+
 const Image& Renderer::draw(const Frame& frame, const Moment& moment) {
   Impl& my = *impl_;
-  const Overlay& overlay = my.style.overlay;
   {
     const CurrentContext current(my.context);
-    Canvas& canvas = *my.canvas;
     my.paint_still_layers(moment);
     my.coming->restore();
-    if (overlay.text && my.plot) {
-      const Box& box = my.plot->box;
-      my.been->restore({box.left, box.top, std::min(my.plot->x_of(frame.time), box.right), box.bottom});
-    }
-    draw_lifters(canvas, my.shape, frame.mill_angle);
-    if (overlay.tracks) draw_trails(canvas, my.setup.balls, frame, moment.past, my.trail_seconds(), my.scale);
-    canvas.meshes.flush();
-    draw_balls(canvas, my.setup.balls, frame, my.scale);
-    canvas.discs.flush();
-    if (overlay.velocity) draw_velocities(canvas, my.setup.balls, frame, my.arrow_seconds());
-    draw_toe_and_shoulder(canvas, my.shape, overlay.toe ? moment.toe_deg : kNotGiven,
-                          overlay.shoulder ? moment.shoulder_deg : kNotGiven);
-    if (overlay.text) draw_moving_panel(canvas, my.panel(), frame);
-    my.flush();
+    if (my.style.overlay.text && my.plot) my.been->restore(my.past_of_plot(frame));
+    my.draw_moving(frame, moment);
   }
   return my.context.image();
+}
+
+Drawing Renderer::sketch(const Frame& frame, const Moment& moment) {
+  Impl& my = *impl_;
+  Drawing drawing{my.style.width, my.style.height, ink::kGround, {}};
+  const CurrentContext current(my.context);
+  my.paint_still_layers(moment);
+  Canvas& canvas = *my.canvas;
+  canvas.record_into(&drawing);
+  my.draw_still(true);
+  if (my.style.overlay.text && my.plot) {
+    const Box past = my.past_of_plot(frame);
+    canvas.clip(past);
+    canvas.meshes.rectangle(past.left, past.top, past.right, past.bottom, ink::kGround);
+    my.draw_still(false);
+    canvas.unclip();
+  }
+  my.draw_moving(frame, moment);
+  canvas.record_into(nullptr);
+  return drawing;
 }
 
 }  // namespace tumble::render

@@ -5,8 +5,11 @@
 #include <vector>
 
 #include "core/charge_motion.h"
+#include "core/drawing.h"
 #include "core/frame.h"
 #include "core/image.h"
+#include "render/offscreen_context.h"
+#include "render/view.h"
 
 // Front door of render: frame -> image, off-screen. The only room that knows OpenGL.
 namespace tumble::render {
@@ -25,7 +28,9 @@ struct Style {
   Colour colour = Colour::kSpeed;
   Overlay overlay;
   bool mirror = false;  // seen from the other end: the mill turns clockwise
-  double slow = 1.0;    // how many times slower than true time; stated in the picture
+  double slow = 1.0;    // how many times slower than true time; stated in the picture; NaN for a still
+  View view;
+  ContextKind context = ContextKind::kOsmesa;
 };
 
 // What surrounds one frame in time: the caller has the whole run, the renderer looks at it.
@@ -43,7 +48,8 @@ class Renderer {
   Renderer& operator=(const Renderer&) = delete;
 
   // Sets the colour scale's ends, e.g. from 0 to the 99th percentile of the whole run's speeds [m/s or rad/s]. By spin
-  // the scale is symmetric, up to the larger of the two; by size and steel there is nothing to set.
+  // the scale is symmetric, up to the larger of the two; by size from the smallest radius to the largest [m]; by steel
+  // there is nothing to set.
   void set_scale(double low, double high);
 
   // How far back trails reach: what Moment::past should cover [s].
@@ -51,6 +57,9 @@ class Renderer {
 
   // The picture; valid until the next draw. Throws WorkError when the context fails.
   const Image& draw(const Frame& frame, const Moment& moment);
+
+  // The same as shapes, for print.
+  Drawing sketch(const Frame& frame, const Moment& moment);
 
  private:
   struct Impl;

@@ -128,6 +128,11 @@ double Text::width(std::string_view utf8, const TextStyle& style) {
 }
 
 void Text::add(std::string_view utf8, double x, double baseline, const TextStyle& style) {
+  if (recorder_.is_on()) {
+    const double anchor = style.align == Align::kLeft ? 0.0 : style.align == Align::kCentre ? 0.5 : 1.0;
+    return recorder_.add(Drawing::Label{
+        std::string(utf8), {x, baseline}, style.size, style.weight == Weight::kBold, anchor, style.colour});
+  }
   const int size = static_cast<int>(std::lround(style.size));
   if (style.align != Align::kLeft) x -= width(utf8, style) * (style.align == Align::kCentre ? 0.5 : 1.0);
   double pen = std::round(x);
@@ -147,6 +152,7 @@ void Text::add(std::string_view utf8, double x, double baseline, const TextStyle
 }
 
 void Text::flush() {
+  if (recorder_.is_on()) return recorder_.flush();
   if (vertices_.empty()) return;
   glUseProgram(pipeline_.program);
   glBindTexture(GL_TEXTURE_2D, atlas_);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "render/palette.h"
+#include "render/recorder.h"
 #include "render/shader.h"
 
 namespace tumble::render {
@@ -30,6 +31,7 @@ class Text {
   void add(std::string_view utf8, double x, double baseline, const TextStyle& style);
   double width(std::string_view utf8, const TextStyle& style);  // [px]
   void flush();
+  void record_into(Drawing* drawing) { recorder_.record_into(drawing); }  // instead of drawing
 
  private:
   struct Glyph {
@@ -44,6 +46,7 @@ class Text {
   const Glyph& glyph(char32_t character, int size, Weight weight);
 
   Pipeline pipeline_;
+  Recorder recorder_;
   GLuint atlas_ = 0;
   int row_ = 0, row_height_ = 0, next_ = 0;  // where the atlas is still free [texel]
   std::unique_ptr<Fonts> fonts_;

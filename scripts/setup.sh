@@ -5,10 +5,9 @@
 set -euo pipefail
 
 packages=(g++ cmake ninja-build pkg-config
-  libeigen3-dev libtbb-dev libhdf5-dev libosmesa6-dev libfreetype-dev fonts-dejavu-core libpng-dev
-  libcairo2-dev fonts-liberation2
+  libeigen3-dev libtbb-dev libhdf5-dev libosmesa6-dev libegl-dev libgl1-mesa-dri libfreetype-dev fonts-dejavu-core fonts-liberation2 libpng-dev
   libopencv-core-dev libopencv-imgproc-dev libopencv-imgcodecs-dev libopencv-videoio-dev
-  libavcodec-dev libavformat-dev libavutil-dev
+  libavcodec-dev libavformat-dev libavutil-dev libimagequant-dev libcairo2-dev
   libcli11-dev libtomlplusplus-dev nlohmann-json3-dev libfmt-dev libnlopt-dev libxsimd-dev libdnnl-dev)
 if [ "${1:-}" = test ]; then
   packages+=(libgtest-dev libgmock-dev clang-format chromium chromium-driver curl jq)

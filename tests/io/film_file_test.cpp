@@ -10,6 +10,8 @@ extern "C" {
 #include <array>
 #include <cmath>
 #include <csignal>
+#include <thread>
+#include <utility>
 #include <vector>
 
 #include "core/error.h"
@@ -89,9 +91,9 @@ Played play(const std::string& path) {
       std::vector<std::uint8_t> rows;
       for (int v = 0; v < frame->height; ++v) {
         const std::uint8_t* row = frame->data[0] + v * frame->linesize[0];
-        rows.insert(rows.end(), row, row + frame->width);
+        rows.insert(rows.end(), row, row + frame->width * (frame->data[1] ? 1 : 4));  // in planes, or BGRA
       }
-      if (played.luma.empty()) {
+      if (played.luma.empty() && frame->data[1]) {
         const int x = frame->width / 2, y = frame->height / 2;
         played.middle = {frame->data[0][y * frame->linesize[0] + x], frame->data[1][y / 2 * frame->linesize[1] + x / 2],
                          frame->data[2][y / 2 * frame->linesize[2] + x / 2]};
@@ -190,6 +192,41 @@ TEST_F(FilmFile, BytesDoNotDependOnThreadsOrLeftovers) {
   for (const std::string& film : films) EXPECT_TRUE(film == films[0]);
 }
 
+// Parts filled side by side or one by one, the last first: the same film, with each frame in its place.
+TEST_F(FilmFile, IsJoinedFromParts) {
+  constexpr int kFrames = 50, kLength = 20;
+  const auto write = [&](bool side_by_side) {
+    FilmWriter film(path(), small());
+    std::vector<FilmPart> parts;
+    for (int first = 0; first < kFrames; first += kLength) parts.push_back(film.part(first));
+    const auto fill = [&](std::size_t k) {
+      for (int i = int(k) * kLength; i < std::min(kFrames, (int(k) + 1) * kLength); ++i)
+        parts[k].write(picture(160, 96, i));
+      parts[k].finish();
+    };
+    std::vector<std::thread> threads;
+    for (std::size_t k = parts.size(); k-- > 0;) {
+      if (side_by_side)
+        threads.emplace_back(fill, k);
+      else
+        fill(k);
+    }
+    for (std::thread& thread : threads) thread.join();
+    for (FilmPart& part : parts) film.append(std::move(part));
+    film.finish();
+    return bytes_of(path());
+  };
+  EXPECT_TRUE(write(false) == write(true));
+  const Played played = play(path());
+  ASSERT_EQ(played.luma.size(), std::size_t{kFrames});
+  for (int i = 0; i < kFrames; ++i) {
+    EXPECT_EQ(played.time[static_cast<std::size_t>(i)], i);
+    const auto at = [&](int u) { return int(played.luma[static_cast<std::size_t>(i)][std::size_t(35 * 160 + u)]); };
+    if (3 * i + 32 >= 160) continue;
+    EXPECT_GT(at(3 * i + 4), at(3 * i + 32) + 40) << i;  // the square, and what it has not reached
+  }
+}
+
 TEST_F(FilmFile, HasItsIndexInFront) {
   write_film(path(), small(), 10);
   const std::string bytes = bytes_of(path());
@@ -281,6 +318,54 @@ TEST(Yuv420, IsWithinOneLevelOfBt709) {
       EXPECT_NEAR(cr[at], 128 + 224 * (r - luma) / 1.5748 / 255, 0.51);
     }
   }
+}
+
+// Every frame of a WebM or GIF comes back in time, near its picture, and with the same bytes for any number of threads.
+TEST_F(FilmFile, WebmAndGifHoldTheirPictures) {
+  for (const char* name : {"film.webm", "film.gif"}) {
+    FilmFormat format = usual_format(name);
+    format.width = 160;
+    format.height = 96;
+    format.threads = 1;
+    const std::string file = (folder_ / name).string(), again = (folder_ / (std::string("again_") + name)).string();
+    write_film(file, format, 37);
+    format.threads = 2;
+    write_film(again, format, 37);
+    EXPECT_EQ(bytes_of(file), bytes_of(again)) << name;
+    const Played played = play(file);
+    ASSERT_EQ(played.luma.size(), 37u) << name;
+    EXPECT_NEAR(played.duration, 37.0 * format.fps_denominator / format.fps_numerator, 0.05) << name;
+    EXPECT_EQ(played.time[30], 30) << name;
+    const bool is_gif = name == std::string("film.gif");
+    const int left = is_gif ? 4 : 1;  // bytes a pixel: GIF comes as BGRA, so the first byte is blue
+    for (const std::size_t i : {0u, 30u}) {
+      const Image drawn = picture(160, 96, static_cast<int>(i));
+      double off = 0;
+      for (int v = 8; v < 88; ++v) {
+        for (int u = 8; u < 30; ++u) {
+          const std::uint8_t* p = drawn.row(v) + 4 * u;
+          const double wanted = is_gif ? p[2] : 16 + (65.738 * p[0] + 129.057 * p[1] + 25.064 * p[2]) / 256;
+          const std::size_t row = static_cast<std::size_t>(v) * (played.luma[i].size() / 96);
+          off += std::abs(played.luma[i][row + static_cast<std::size_t>(u * left)] - wanted) / (80 * 22);
+        }
+      }
+      EXPECT_LT(off, is_gif ? 3 : 6) << name << " " << i;
+    }
+  }
+}
+
+TEST_F(FilmFile, RefusesWhatItsKindCannotHold) {
+  const auto refuses = [&](const char* name, const FilmFormat& format) {
+    EXPECT_THROW(FilmWriter((folder_ / name).string(), format), InputError) << name;
+  };
+  refuses("film.avi", small());
+  FilmFormat sixty = usual_format("film.gif");
+  sixty.fps_numerator = 60;
+  refuses("film.gif", sixty);
+  FilmFormat coarse = usual_format("film.webm");
+  coarse.crf = 64;
+  refuses("film.webm", coarse);
+  EXPECT_TRUE(folder_is_empty());
 }
 
 }  // namespace

@@ -1,0 +1,202 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <variant>
+
+#include "core/error.h"
+#include "core/units.h"
+#include "render/sheet.h"
+#include "tests/support/mill_scene.h"
+
+namespace tumble::render {
+namespace {
+
+constexpr double kScale = 302.4 / 0.2725;  // pixels per metre of a 1280 x 720 picture of the 0.545 m mill
+
+Style plain() {
+  Style style;
+  style.overlay.toe = style.overlay.shoulder = false;
+  return style;
+}
+
+Image picture(const Scene& scene, const Style& style, const Moment& moment = {}) {
+  Renderer renderer(scene.setup, style);
+  return renderer.draw(scene.frame, moment);
+}
+
+// Where the picture shows its one ball: against the same picture with the ball elsewhere.
+Blob ball_in(const Scene& scene, const Style& style, const Moment& moment = {}) {
+  Scene empty = scene;
+  empty.frame.x[0] = 10;
+  return changed(picture(scene, style, moment), picture(empty, style, moment));
+}
+
+TEST(Views, OnTheShellABallThatTurnsWithItStandsStill) {
+  Style style = plain();
+  style.view.from = View::From::kShell;
+  Scene scene = scene_of(paper_mill(), 1);
+  for (const double angle : {0.0, 0.7, 2.9}) {
+    scene.frame.mill_angle = angle;
+    scene.frame.x[0] = 0.2 * std::cos(angle + 0.4);
+    scene.frame.y[0] = 0.2 * std::sin(angle + 0.4);
+    const Blob ball = ball_in(scene, style);
+    EXPECT_NEAR(ball.u, 399.5 + 0.2 * kScale * std::cos(0.4), 0.1) << angle;
+    EXPECT_NEAR(ball.v, 359.5 - 0.2 * kScale * std::sin(0.4), 0.1) << angle;
+  }
+}
+
+// The gravity arrow is what changes in the corner when the mill turns; its bright tip points to where down is.
+TEST(Views, OnTheShellGravityGoesRound) {
+  Style style = plain();
+  style.view.from = View::From::kShell;
+  Scene scene = scene_of(paper_mill(), 1);
+  for (const double angle : {0.0, 1.2, 4.0}) {
+    scene.frame.mill_angle = angle;
+    const Image image = picture(scene, style);
+    double u = 0, v = 0, sum = 0;  // of the arrow's head: bright, in the outer half of the dial at (48, 42)
+    for (int y = 18; y < 66; ++y) {
+      for (int x = 24; x < 72; ++x) {
+        const double r = std::hypot(x - 47.5, y - 41.5);
+        if (r < 9 || r > 22 || image.row(y)[4 * x] < 180) continue;
+        u += x - 47.5;
+        v += y - 41.5;
+        sum += 1;
+      }
+    }
+    ASSERT_GT(sum, 10);
+    const double down = -kPi / 2 - angle;
+    EXPECT_GT(u * std::cos(down) - v * std::sin(down), 0.9 * std::hypot(u, v)) << angle;
+  }
+}
+
+TEST(Views, AFollowedBallStaysInTheMiddle) {
+  Style style = plain();
+  style.view = {View::From::kBall, 0, 2.0};
+  Scene scene = scene_of(paper_mill(), 3);
+  for (const double x : {-0.1, 0.12}) {
+    scene.frame.x[0] = x;
+    scene.frame.x[1] = x + 0.06;
+    scene.frame.y[1] = scene.frame.y[0] + 0.02;
+    Scene without = scene;
+    without.frame.x[1] = 10;
+    const Blob other = changed(picture(scene, style), picture(without, style));
+    EXPECT_NEAR(other.u, (776 - 1) / 2.0 + 0.06 * 2 * kScale, 0.2);
+    EXPECT_NEAR(other.v, 359.5 - 0.02 * 2 * kScale, 0.2);
+  }
+}
+
+// However near, nothing of the mill lies over the panel.
+TEST(Views, ACloserViewKeepsOffThePanel) {
+  Style style = plain(), far = plain();
+  style.view.zoom = 3;
+  const Scene scene = scene_of(paper_mill(), 60);
+  EXPECT_EQ(largest_difference(picture(scene, style), picture(scene, far), 777), 0);
+  EXPECT_GT(largest_difference(picture(scene, style), picture(scene, far)), 100);
+}
+
+std::vector<SheetMill> three_mills() {
+  std::vector<SheetMill> mills;
+  for (const double diameter : {0.545, 0.3, 0.545}) {
+    Config config = paper_mill();
+    config.mill.diameter = diameter;
+    mills.push_back({scene_of(config, 1).setup, "mill"});
+  }
+  return mills;
+}
+
+// The ball of cell k, in a sheet of three mills of which the second is smaller.
+Blob in_cell(std::size_t k, double x, double y) {
+  const std::vector<SheetMill> mills = three_mills();
+  Sheet sheet(mills, plain());
+  std::vector<Frame> frames(3, scene_of(paper_mill(), 1).frame);
+  for (Frame& f : frames) f.x[0] = 10;
+  const std::vector<Moment> moments(3);
+  const Image empty = sheet.draw(frames, moments, 0);
+  frames[k].x[0] = x;
+  frames[k].y[0] = y;
+  return changed(sheet.draw(frames, moments, 0), empty);
+}
+
+TEST(Views, SideBySideAllMillsHaveOneScale) {
+  const Blob a0 = in_cell(0, -0.1, 0), a1 = in_cell(0, 0.1, 0), b0 = in_cell(1, -0.1, 0), b1 = in_cell(1, 0.1, 0);
+  EXPECT_GT(a1.u - a0.u, 40);
+  EXPECT_NEAR(a1.u - a0.u, b1.u - b0.u, 0.2);
+  EXPECT_GT(b0.u, a1.u);  // and stand in a row
+  EXPECT_NEAR(a0.v, b0.v, 0.2);
+}
+
+TEST(Views, SideBySideACellIsAsItsOwnPicture) {
+  std::vector<SheetMill> mills = three_mills();
+  mills[1] = mills[0];
+  Scene scene = scene_of(paper_mill(), 1);
+  Sheet sheet(mills, {});
+  const std::vector<Frame> frames(3, scene.frame);
+  const std::vector<Moment> moments(3, Moment{230, 40, {}, {}, {}});
+  const Image all = sheet.draw(frames, moments, 1.25);
+  Style style;
+  style.width = style.height = 406;
+  style.overlay.text = false;
+  const Image alone = picture(scene, style, moments[0]);
+  int found = 0;  // it is there three times, pixel by pixel
+  for (int left = 0; left + 406 <= 1280; ++left)
+    for (int top = 100; top < 200; ++top)
+      if (std::equal(alone.row(200), alone.row(200) + 406 * 4, all.row(top + 200) + 4 * left) &&
+          std::equal(alone.row(60), alone.row(60) + 406 * 4, all.row(top + 60) + 4 * left))
+        ++found;
+  EXPECT_EQ(found, 3);
+}
+
+TEST(Views, ASheetHoldsOneToTwelveMills) {
+  const std::vector<SheetMill> one(1, three_mills()[0]), thirteen(13, one[0]);
+  EXPECT_THROW(Sheet({}, {}), InputError);
+  EXPECT_THROW(Sheet(thirteen, {}), InputError);
+  const Scene scene = scene_of(paper_mill(), 1);
+  Sheet sheet(one, {});
+  EXPECT_TRUE(sheet.draw({&scene.frame, 1}, std::vector<Moment>(1), 0).rgba == picture(scene, {}).rgba);
+}
+
+// A drawing has what the picture has, where the picture has it.
+TEST(Views, ADrawingIsThePictureInShapes) {
+  const Scene scene = scene_of(paper_mill(), 40);
+  for (const View::From from : {View::From::kLab, View::From::kShell, View::From::kBall}) {
+    Style style;
+    style.view.from = from;
+    Renderer renderer(scene.setup, style);
+    const Moment moment{230, 40, {}, {}, {}};
+    const Image before = renderer.draw(scene.frame, moment);
+    const Drawing drawing = renderer.sketch(scene.frame, moment);
+    EXPECT_TRUE(renderer.draw(scene.frame, moment).rgba == before.rgba);  // sketching leaves no trace
+    int balls = 0, depth = 0;
+    bool has_shoulder = false;
+    for (const Drawing::Shape& shape : drawing.shapes) {
+      if (const auto* ball = std::get_if<Drawing::Ball>(&shape)) {
+        ++balls;
+        EXPECT_GT(ball->radius, 12 * 1.1);
+      }
+      if (const auto* label = std::get_if<Drawing::Label>(&shape)) has_shoulder |= label->text == "shoulder";
+      depth += std::holds_alternative<Drawing::Enter>(shape) - std::holds_alternative<Drawing::Leave>(shape);
+    }
+    EXPECT_EQ(balls, 40);
+    EXPECT_EQ(depth, 0);
+    EXPECT_TRUE(has_shoulder || from == View::From::kBall);
+  }
+}
+
+TEST(Views, EglDrawsWhatOsmesaDraws) {
+  const Scene scene = scene_of(paper_mill(), 112);
+  Style egl;
+  egl.overlay.velocity = true;
+  Style osmesa = egl;
+  egl.context = ContextKind::kEgl;
+  std::optional<Image> image;
+  try {
+    image = picture(scene, egl, {230, 40, {}, {}, {}});
+  } catch (const WorkError& e) {
+    GTEST_SKIP() << e.what();
+  }
+  EXPECT_LE(largest_difference(*image, picture(scene, osmesa, {230, 40, {}, {}, {}})), 1);
+}
+
+}  // namespace
+}  // namespace tumble::render
