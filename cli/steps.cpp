@@ -7,7 +7,11 @@
 #include <cstring>
 #include <exception>
 #include <fstream>
+#include <map>
 #include <memory>
+#include <mutex>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "cli/run_player.h"
@@ -41,6 +45,12 @@ bool looks_like_hdf5(const fs::path& path) {
   char head[8] = {};
   return file.read(head, sizeof head) && std::memcmp(head, "\x89HDF\r\n\x1a\n", sizeof head) == 0;
 }
+
+constexpr std::size_t kMostWorkers = 16;
+
+// Frames of a film that are encoded by themselves: few enough that several threads have work in a short film, enough
+// that key frames are no burden; a key frame now and then also lets players jump. Hangs on the film alone.
+std::size_t part_length(std::size_t frames) { return std::clamp<std::size_t>((frames + 15) / 16, 24, 240); }
 
 struct Marks {
   double toe_deg = kNotGiven, shoulder_deg = kNotGiven;
@@ -81,54 +91,80 @@ std::size_t render_run(const io::RunReader& run, const ChargeMotion& truth, cons
   const double top = scale_top(run, plan.style.colour);
   const double stored_rate = run.setup().config.run.frames_per_second;
 
-  // Several renderers draw a batch of frames side by side; then the batch is written in order.
-  const std::size_t workers = std::min<std::size_t>(static_cast<std::size_t>(thread_limit()), 8);
-  constexpr std::size_t kEach = 4;
-  std::vector<std::unique_ptr<render::Renderer>> renderers;
-  for (std::size_t w = 0; w < workers; ++w) {
-    renderers.push_back(std::make_unique<render::Renderer>(run.setup(), plan.style));
-    renderers.back()->set_scale(0, top);
-  }
   std::unique_ptr<io::FilmWriter> film;
   if (!as_pictures) film = std::make_unique<io::FilmWriter>(output.string(), plan.format);
-
   ProgressLine line(options, "rendering", "nothing was written under " + output.string());
   const Progress progress = line.callback();
-  RunPlayer player(run);
-  // Trails show a fixed stretch of true time: so many film frames before each.
-  const std::size_t trail =
-      plan.style.overlay.tracks ? static_cast<std::size_t>(std::ceil(renderers[0]->trail_seconds() / step)) : 0;
-  std::vector<Image> images(workers * kEach);
-  std::vector<Frame> frames(workers * kEach);
-  for (std::size_t from = 0; from < count; from += images.size()) {
-    report(progress, double(from) / double(count));
-    const std::size_t n = std::min(images.size(), count - from);
-    std::vector<Frame> before;  // for trails: the film frames before this batch, then the batch itself
-    if (trail > 0)
-      for (std::size_t k = from > trail ? from - trail : 0; k < from; ++k)
-        before.push_back(player.at(start + double(k) * step));
-    const std::size_t lead = before.size();
-    for (std::size_t i = 0; i < n; ++i) frames[i] = player.at(start + double(from + i) * step);
-    if (trail > 0) before.insert(before.end(), frames.begin(), frames.begin() + static_cast<std::ptrdiff_t>(n));
 
-    parallel_for(workers, 1, [&](std::size_t w, std::size_t) {
-      for (std::size_t i = w * kEach; i < std::min(n, (w + 1) * kEach); ++i) {
-        const Marks marks = marks_at(truth, frames[i].time - run.time().front(), stored_rate);
-        render::Moment moment{marks.toe_deg, marks.shoulder_deg, run.time(), run.torque(), {}};
-        if (trail > 0) {
-          const std::size_t here = lead + i, first = here > trail ? here - trail : 0;
-          moment.past = std::span<const Frame>(before).subspan(first, here - first);
-        }
-        images[i] = renderers[w]->draw(frames[i], moment);
-      }
-    });
-    for (std::size_t i = 0; i < n; ++i) {
-      if (film)
-        film->write(images[i]);
-      else
-        io::write_png((output / picture_name(from + i)).string(), images[i]);
+  // Each thread takes the next part of the film, draws and encodes it all, and puts it behind those that are ready.
+  const std::size_t length = part_length(count);
+  const std::size_t workers = std::min({static_cast<std::size_t>(thread_limit()), (count + length - 1) / length,
+                                        kMostWorkers});
+  std::mutex mutex;  // of all that follows
+  std::size_t next = 0, drawn = 0;
+  bool failed = false;
+  std::map<std::size_t, io::FilmPart> ready;  // by its first frame
+  std::size_t appended = 0;
+  const auto take = [&] {
+    const std::lock_guard lock(mutex);
+    return failed ? count : std::exchange(next, std::min(count, next + length));
+  };
+  const auto tell = [&] {
+    const std::lock_guard lock(mutex);
+    report(progress, double(drawn++) / double(count));
+    return !failed;
+  };
+  const auto deliver = [&](std::size_t first, io::FilmPart part) {
+    const std::lock_guard lock(mutex);
+    ready.emplace(first, std::move(part));
+    for (auto it = ready.find(appended); it != ready.end(); it = ready.find(appended)) {
+      film->append(std::move(it->second));
+      ready.erase(it);
+      appended = std::min(count, appended + length);
     }
-  }
+  };
+
+  const auto draw_parts = [&] {
+    render::Renderer renderer(run.setup(), plan.style);
+    renderer.set_scale(0, top);
+    RunPlayer player(run);
+    // Trails show a fixed stretch of true time: so many film frames before each.
+    const std::size_t trail =
+        plan.style.overlay.tracks ? static_cast<std::size_t>(std::ceil(renderer.trail_seconds() / step)) : 0;
+    for (std::size_t first = take(); first < count; first = take()) {
+      std::vector<Frame> past;
+      for (std::size_t k = first > trail ? first - trail : 0; k < first; ++k)
+        past.push_back(player.at(start + double(k) * step));
+      std::optional<io::FilmPart> part;
+      if (film) part = film->part(static_cast<std::int64_t>(first));
+      for (std::size_t i = first; i < std::min(count, first + length); ++i) {
+        if (!tell()) return;
+        Frame frame = player.at(start + double(i) * step);
+        const Marks marks = marks_at(truth, frame.time - run.time().front(), stored_rate);
+        const Image& image =
+            renderer.draw(frame, {marks.toe_deg, marks.shoulder_deg, run.time(), run.torque(), past});
+        if (part)
+          part->write(image);
+        else
+          io::write_png((output / picture_name(i)).string(), image);
+        if (trail == 0) continue;
+        if (past.size() == trail) past.erase(past.begin());
+        past.push_back(std::move(frame));
+      }
+      if (!part) continue;
+      part->finish();
+      deliver(first, std::move(*part));
+    }
+  };
+  parallel_for(workers, 1, [&](std::size_t, std::size_t) {
+    try {
+      draw_parts();
+    } catch (...) {
+      const std::lock_guard lock(mutex);
+      failed = true;  // the others leave too
+      throw;
+    }
+  });
   if (film) film->finish();
   report(progress, 1);
   return count;

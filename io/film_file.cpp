@@ -20,6 +20,7 @@ extern "C" {
 #include <numeric>
 #include <string_view>
 #include <thread>
+#include <vector>
 
 #include "core/error.h"
 #include "io/output.h"
@@ -139,67 +140,45 @@ class Belt {
   std::thread thread_;  // last: it starts when all else is there
 };
 
-}  // namespace
+// Every call into libav passes here, so that none fails unseen.
+void expect(int result, const std::string& name, const char* what) {
+  if (result < 0) throw WorkError(name, fmt::format("{}: {}", what, reason(result)));
+}
 
-struct FilmWriter::Impl {
-  Impl(const std::string& path, const FilmFormat& wanted) : name(path), format(wanted), file(path) {}
-  ~Impl() {
-    belt.reset();  // the encoder must be at rest
-    av_packet_free(&packet);
-    avcodec_free_context(&encoder);
-    if (muxer) avio_closep(&muxer->pb);
-    avformat_free_context(muxer);
-  }
+AVRational rate_of(const FilmFormat& format) {
+  const int common = std::gcd(format.fps_numerator, format.fps_denominator);
+  return {format.fps_numerator / common, format.fps_denominator / common};
+}
 
-  // Every call into libav passes here, so that none fails unseen.
-  void expect(int result, const char* what) const {
-    if (result < 0) throw WorkError(name, fmt::format("{}: {}", what, reason(result)));
-  }
-
-  void open();
-  Picture picture_of(const Image& image);
-  void encode(const AVFrame* frame);  // null: what the encoder still holds
-
-  std::string name;
-  FilmFormat format;
-  StagedFile file;
-  AVFormatContext* muxer = nullptr;
-  AVCodecContext* encoder = nullptr;
-  AVStream* stream = nullptr;
-  AVPacket* packet = nullptr;
-  std::int64_t frames = 0;
-  bool finished = false;
-  std::unique_ptr<Belt> belt;  // none with one thread
+struct FreeEncoder {
+  void operator()(AVCodecContext* encoder) const { avcodec_free_context(&encoder); }
 };
+using Encoder = std::unique_ptr<AVCodecContext, FreeEncoder>;
 
-void FilmWriter::Impl::open() {
-  static std::once_flag once;
-  std::call_once(once, [] { av_log_set_level(AV_LOG_QUIET); });  // rooms do not print
+struct FreePacket {
+  void operator()(AVPacket* packet) const { av_packet_free(&packet); }
+};
+using Packet = std::unique_ptr<AVPacket, FreePacket>;
 
+Encoder open_encoder(const std::string& name, const FilmFormat& format) {
   const AVCodec* codec = avcodec_find_encoder_by_name("libx264");
   if (!codec) throw WorkError(name, "libavcodec has no libx264; install a libavcodec that was built with it");
-  expect(avformat_alloc_output_context2(&muxer, nullptr, "mp4", file.path().c_str()), "cannot be set up as MP4");
-  encoder = avcodec_alloc_context3(codec);
-  stream = avformat_new_stream(muxer, nullptr);
-  packet = av_packet_alloc();
-  if (!encoder || !stream || !packet) throw WorkError(name, "not enough memory for the encoder");
-
-  const int common = std::gcd(format.fps_numerator, format.fps_denominator);
-  const AVRational rate{format.fps_numerator / common, format.fps_denominator / common};
+  Encoder encoder(avcodec_alloc_context3(codec));
+  if (!encoder) throw WorkError(name, "not enough memory for the encoder");
   encoder->width = format.width;
   encoder->height = format.height;
   encoder->pix_fmt = AV_PIX_FMT_YUV420P;
-  encoder->time_base = av_inv_q(rate);
-  encoder->framerate = rate;
+  encoder->framerate = rate_of(format);
+  encoder->time_base = av_inv_q(encoder->framerate);
   encoder->color_primaries = AVCOL_PRI_BT709;
   encoder->color_trc = AVCOL_TRC_BT709;
   encoder->colorspace = AVCOL_SPC_BT709;
   encoder->color_range = AVCOL_RANGE_MPEG;
   encoder->chroma_sample_location = AVCHROMA_LOC_CENTER;
   // One thread always: x264's decisions change with its number of threads (motion range, lookahead), and the same
-  // frames must give the same bytes.
+  // frames must give the same bytes. Parts of a film are what is encoded side by side.
   encoder->thread_count = 1;
-  if (muxer->oformat->flags & AVFMT_GLOBALHEADER) encoder->flags |= AV_CODEC_FLAG_GLOBAL_HEADER;
+  encoder->flags |= AV_CODEC_FLAG_GLOBAL_HEADER;  // as MP4 has it
 
   AVDictionary* options = nullptr;
   av_dict_set(&options, "preset", format.preset.c_str(), 0);
@@ -207,70 +186,184 @@ void FilmWriter::Impl::open() {
   // x264 0.164's AVX-512 path of macroblock-tree reads memory that it never wrote: the same pictures give other bytes
   // from run to run. Its AVX2 path gives the same bytes as all older ones, at the same speed.
   if (has_avx512()) av_dict_set(&options, "x264-params", "asm=avx2", 0);
-  const int opened = avcodec_open2(encoder, codec, &options);
+  const int opened = avcodec_open2(encoder.get(), codec, &options);
   av_dict_free(&options);
-  expect(opened, "x264 does not take this film");
+  expect(opened, name, "x264 does not take this film");
+  return encoder;
+}
 
-  expect(avcodec_parameters_from_context(stream->codecpar, encoder), "cannot be described");
-  stream->time_base = encoder->time_base;
-  stream->avg_frame_rate = rate;
+}  // namespace
 
-  expect(avio_open(&muxer->pb, file.path().c_str(), AVIO_FLAG_WRITE), "cannot be opened for writing");
+struct FilmPart::Impl {
+  Impl(const std::string& film, const FilmFormat& wanted, Encoder opened, std::int64_t first)
+      : name(film), format(wanted), encoder(std::move(opened)), next(first) {}
+
+  Picture new_picture() const;
+  void fill(AVFrame& picture, const Image& image);  // and gives it its time
+  void encode(const AVFrame* picture);              // null: what the encoder still holds
+
+  std::string name;
+  FilmFormat format;
+  Encoder encoder;
+  std::int64_t next = 0;  // the film's frame that comes next
+  Picture picture;        // used again for every frame
+  std::vector<Packet> packets;
+};
+
+Picture FilmPart::Impl::new_picture() const {
+  Picture fresh(av_frame_alloc());
+  if (!fresh) throw WorkError(name, "no memory for a picture");
+  fresh->format = AV_PIX_FMT_YUV420P;
+  fresh->width = format.width;
+  fresh->height = format.height;
+  expect(av_frame_get_buffer(fresh.get(), 0), name, "no memory for a picture");
+  return fresh;
+}
+
+void FilmPart::Impl::fill(AVFrame& into, const Image& image) {
+  if (image.width != format.width || image.height != format.height) {
+    throw WorkError(name, fmt::format("a picture of {}x{} px came into a film of {}x{} px", image.width, image.height,
+                                      format.width, format.height));
+  }
+  expect(av_frame_make_writable(&into), name, "no memory for a picture");
+  yuv420_from_rgba(image, {into.data[0], into.data[1], into.data[2], into.linesize[0], into.linesize[1],
+                           into.linesize[2]});
+  into.pts = next++;
+}
+
+void FilmPart::Impl::encode(const AVFrame* frame) {
+  expect(avcodec_send_frame(encoder.get(), frame), name, "a frame cannot be encoded");
+  while (true) {
+    Packet packet(av_packet_alloc());
+    if (!packet) throw WorkError(name, "not enough memory for the encoder");
+    const int got = avcodec_receive_packet(encoder.get(), packet.get());
+    if (got == AVERROR(EAGAIN) || got == AVERROR_EOF) return;
+    expect(got, name, "a frame cannot be encoded");
+    packets.push_back(std::move(packet));
+  }
+}
+
+FilmPart::FilmPart(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+FilmPart::FilmPart(FilmPart&&) noexcept = default;
+FilmPart& FilmPart::operator=(FilmPart&&) noexcept = default;
+FilmPart::~FilmPart() = default;
+
+void FilmPart::write(const Image& image) {
+  Impl& my = *impl_;
+  if (!my.picture) my.picture = my.new_picture();
+  my.fill(*my.picture, image);
+  my.encode(my.picture.get());
+}
+
+void FilmPart::finish() {
+  impl_->encode(nullptr);
+  impl_->encoder.reset();  // a finished part may wait for its turn: its packets are all that it needs
+  impl_->picture.reset();
+}
+
+struct FilmWriter::Impl {
+  Impl(const std::string& path, const FilmFormat& wanted) : name(path), format(wanted), file(path) {}
+  ~Impl() {
+    belt.reset();  // the encoder must be at rest
+    if (muxer) avio_closep(&muxer->pb);
+    avformat_free_context(muxer);
+  }
+
+  void open();
+  Encoder take_encoder();
+  void mux(std::vector<Packet>& packets);
+
+  std::string name;
+  FilmFormat format;
+  StagedFile file;
+  AVFormatContext* muxer = nullptr;
+  AVStream* stream = nullptr;
+  std::mutex mutex;
+  Encoder opened;                         // told the muxer what the film is like; the first part takes it
+  std::unique_ptr<FilmPart::Impl> serial;  // of write(): the whole film is one part
+  std::unique_ptr<Belt> belt;             // of write(), with several threads
+  std::int64_t frames = 0;
+  bool finished = false;
+};
+
+void FilmWriter::Impl::open() {
+  static std::once_flag once;
+  std::call_once(once, [] { av_log_set_level(AV_LOG_QUIET); });  // rooms do not print
+  opened = open_encoder(name, format);
+  expect(avformat_alloc_output_context2(&muxer, nullptr, "mp4", file.path().c_str()), name, "cannot be set up as MP4");
+  stream = avformat_new_stream(muxer, nullptr);
+  if (!stream) throw WorkError(name, "not enough memory for the film");
+  expect(avcodec_parameters_from_context(stream->codecpar, opened.get()), name, "cannot be described");
+  stream->avg_frame_rate = rate_of(format);
+  stream->time_base = av_inv_q(stream->avg_frame_rate);
+
+  expect(avio_open(&muxer->pb, file.path().c_str(), AVIO_FLAG_WRITE), name, "cannot be opened for writing");
   AVDictionary* layout = nullptr;
   av_dict_set(&layout, "movflags", "+faststart", 0);
   const int begun = avformat_write_header(muxer, &layout);
   av_dict_free(&layout);
-  expect(begun, "its header cannot be written");
+  expect(begun, name, "its header cannot be written");
 }
 
-Picture FilmWriter::Impl::picture_of(const Image& image) {
-  Picture picture(av_frame_alloc());
-  if (!picture) throw WorkError(name, "no memory for a picture");
-  picture->format = AV_PIX_FMT_YUV420P;
-  picture->width = format.width;
-  picture->height = format.height;
-  expect(av_frame_get_buffer(picture.get(), 0), "no memory for a picture");
-  yuv420_from_rgba(image, {picture->data[0], picture->data[1], picture->data[2], picture->linesize[0],
-                           picture->linesize[1], picture->linesize[2]});
-  picture->pts = frames++;
-  return picture;
+Encoder FilmWriter::Impl::take_encoder() {
+  {
+    const std::lock_guard lock(mutex);
+    if (opened) return std::move(opened);
+  }
+  return open_encoder(name, format);
 }
 
-void FilmWriter::Impl::encode(const AVFrame* frame) {
-  expect(avcodec_send_frame(encoder, frame), "a frame cannot be encoded");
-  while (true) {
-    const int got = avcodec_receive_packet(encoder, packet);
-    if (got == AVERROR(EAGAIN) || got == AVERROR_EOF) return;
-    expect(got, "a frame cannot be encoded");
+void FilmWriter::Impl::mux(std::vector<Packet>& packets) {
+  for (const Packet& packet : packets) {
     packet->stream_index = stream->index;
     packet->duration = 1;  // in frames: stated, so that no muxer has to guess the last one's
-    av_packet_rescale_ts(packet, encoder->time_base, stream->time_base);
-    expect(av_interleaved_write_frame(muxer, packet), "cannot be written");
+    av_packet_rescale_ts(packet.get(), av_inv_q(rate_of(format)), stream->time_base);
+    expect(av_interleaved_write_frame(muxer, packet.get()), name, "cannot be written");
   }
+  packets.clear();
 }
 
 FilmWriter::FilmWriter(const std::string& path, const FilmFormat& format) {
   check(path, format);
   impl_ = std::make_unique<Impl>(path, format);
-  Impl& my = *impl_;
-  my.open();
-  if (format.threads != 1) my.belt = std::make_unique<Belt>([&my](const AVFrame* frame) { my.encode(frame); });
+  impl_->open();
 }
 
 FilmWriter::~FilmWriter() = default;
 
+FilmPart FilmWriter::part(std::int64_t first_frame) {
+  Impl& my = *impl_;
+  return FilmPart(std::make_unique<FilmPart::Impl>(my.name, my.format, my.take_encoder(), first_frame));
+}
+
+void FilmWriter::append(FilmPart part) {
+  impl_->frames = part.impl_->next;
+  impl_->mux(part.impl_->packets);
+}
+
 void FilmWriter::write(const Image& image) {
   Impl& my = *impl_;
-  if (image.width != my.format.width || image.height != my.format.height) {
-    throw WorkError(my.name, fmt::format("a picture of {}x{} px came into a film of {}x{} px", image.width,
-                                         image.height, my.format.width, my.format.height));
+  if (!my.serial) {
+    my.serial = std::make_unique<FilmPart::Impl>(my.name, my.format, my.take_encoder(), 0);
+    if (my.format.threads != 1) {
+      my.belt = std::make_unique<Belt>([&my](const AVFrame* frame) {
+        my.serial->encode(frame);
+        my.mux(my.serial->packets);
+      });
+    }
   }
-  Picture picture = my.picture_of(image);
+  FilmPart::Impl& part = *my.serial;
   if (my.belt) {
+    Picture picture = part.new_picture();
+    part.fill(*picture, image);
     my.belt->put(std::move(picture));
   } else {
-    my.encode(picture.get());
+    if (!part.picture) part.picture = part.new_picture();
+    part.fill(*part.picture, image);
+    part.encode(part.picture.get());
+    my.mux(part.packets);
   }
+  my.frames = part.next;
 }
 
 void FilmWriter::finish() {
@@ -278,9 +371,12 @@ void FilmWriter::finish() {
   if (my.finished) return;
   if (my.frames == 0) throw WorkError(my.name, "a film needs at least one frame");
   if (my.belt) my.belt->drain();
-  my.encode(nullptr);
-  my.expect(av_write_trailer(my.muxer), "its index cannot be written");
-  my.expect(avio_closep(&my.muxer->pb), "cannot be closed");
+  if (my.serial) {
+    my.serial->encode(nullptr);
+    my.mux(my.serial->packets);
+  }
+  expect(av_write_trailer(my.muxer), my.name, "its index cannot be written");
+  expect(avio_closep(&my.muxer->pb), my.name, "cannot be closed");
   my.file.commit();
   my.finished = true;
 }
