@@ -9,9 +9,10 @@
 #include "cli/verbs.h"
 
 // Films and pictures need OpenCV, libav and OSMesa, which bring 250 libraries: to load them takes a quarter of a second
-// and 120 MB, more than a small mill's simulation. So `tumble` is two programs: this one has the verbs without
-// pictures, and `tumble-pictures` beside it has all of them and takes over for everything else. Rejected: to load the
-// pictures' half with dlopen, which would hold the rooms' state (locks, threads, signals) twice in one process.
+// and 120 MB, more than a small mill's simulation. So `tumble` is three programs: this one has the verbs without
+// pictures, `tumble-render` beside it draws films and need not load OpenCV, and `tumble-pictures` has all verbs and
+// takes over for everything else. Rejected: to load the pictures' half with dlopen, which would hold the rooms' state
+// (locks, threads, signals) twice in one process.
 namespace {
 
 using namespace tumble::cli;
@@ -24,12 +25,12 @@ constexpr Verb kWithoutPictures[] = {
     {"effects", add_effects},   {"shell", add_shell},
 };
 
-int hand_over(char** argv) {
+int hand_over(const char* program, char** argv) {
   std::error_code error;
   const std::filesystem::path self = std::filesystem::read_symlink("/proc/self/exe", error);
-  const std::filesystem::path pictures = self.parent_path() / "tumble-pictures";
-  execv(pictures.c_str(), argv);
-  return fail(pictures.string() + ": cannot be run (" + std::strerror(errno) + "); it belongs beside " + self.string(),
+  const std::filesystem::path other = self.parent_path() / program;
+  execv(other.c_str(), argv);
+  return fail(other.string() + ": cannot be run (" + std::strerror(errno) + "); it belongs beside " + self.string(),
               1);
 }
 
@@ -40,5 +41,5 @@ int main(int argc, char** argv) {
   for (const Verb& verb : kWithoutPictures)
     if (verb.name == word) return run_program(argc, argv, {&verb.add, 1});
   if (word == "--version" && argc == 2) return run_program(argc, argv, {});
-  return hand_over(argv);
+  return hand_over(word == "render" ? "tumble-render" : "tumble-pictures", argv);
 }

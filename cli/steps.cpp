@@ -4,9 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <exception>
-#include <fstream>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -17,11 +15,11 @@
 #include "cli/run_player.h"
 #include "core/angle.h"
 #include "core/error.h"
+#include "core/large_arrays.h"
 #include "core/parallel_for.h"
 #include "core/quantile.h"
 #include "io/image_file.h"
 #include "io/output.h"
-#include "io/tracks_file.h"
 
 namespace tumble::cli {
 namespace {
@@ -37,13 +35,6 @@ double scale_top(const io::RunReader& run, render::Colour colour) {
   }
   if (values.empty()) return 1;
   return std::max(quantile_of(std::move(values), 0.99), 1e-3);
-}
-
-// HDF5's signature: a run file, even one cut short, is to be refused as a run file and not as a film.
-bool looks_like_hdf5(const fs::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  char head[8] = {};
-  return file.read(head, sizeof head) && std::memcmp(head, "\x89HDF\r\n\x1a\n", sizeof head) == 0;
 }
 
 constexpr std::size_t kMostWorkers = 16;
@@ -82,6 +73,7 @@ std::string picture_name(std::size_t index) { return fmt::format("frame_{:06}.pn
 std::size_t render_run(const io::RunReader& run, const ChargeMotion& truth, const FilmPlan& plan,
                        const fs::path& output, bool as_pictures, const CommonOptions& options) {
   if (run.frame_count() == 0) throw InputError(truth.origin, "holds no frames; simulate for longer");
+  keep_large_arrays();
   const double film_rate = double(plan.format.fps_numerator) / plan.format.fps_denominator;
   const double start = run.time().front() + plan.from;
   double span = run.time().back() - start;
@@ -168,24 +160,6 @@ std::size_t render_run(const io::RunReader& run, const ChargeMotion& truth, cons
   if (film) film->finish();
   report(progress, 1);
   return count;
-}
-
-ChargeMotion measure(const fs::path& input, const analysis::TracksOptions& film, const CommonOptions& options) {
-  std::error_code error;
-  if (!fs::exists(input, error))
-    throw InputError(input.string(), "does not exist; give a film, a folder or a run file");
-  ChargeMotion motion;
-  if (looks_like_hdf5(input)) {
-    motion = measure_run(io::RunReader(input), options);
-  } else if (input.extension() == ".csv") {
-    motion = analysis::measure_tracks(io::read_pixel_tracks(input), film);
-  } else {
-    ProgressLine line(options, "reading the film", "nothing was written");
-    motion = fs::is_directory(input, error) ? analysis::measure_stills(input.string(), film, line.callback())
-                                            : analysis::measure_film(input.string(), film, line.callback());
-  }
-  motion.origin = input.string();
-  return motion;
 }
 
 }  // namespace tumble::cli

@@ -24,16 +24,20 @@ constexpr std::int16_t kCbr = fixed(-kRed * kCbScale), kCbg = fixed(-kGreen * kC
 constexpr std::int16_t kCrg = fixed(-kGreen * kCrScale), kCrb = fixed(-kBlue * kCrScale), kCrr = -kCrg - kCrb;
 constexpr std::int32_t kHalf = 1 << (kShift - 1);
 
+// The loops below are compiled once for every machine and once for those with AVX2, which do the same sums on twice as
+// many pixels at a time.
+#define TUMBLE_INTO_EACH [[gnu::always_inline]] inline
+
 // Four channels in one load, lowest byte red on the little-endian machines that Debian's libx264 runs on.
 static_assert(std::endian::native == std::endian::little);
-inline std::uint32_t pixel(const std::uint8_t* rgba) {
+TUMBLE_INTO_EACH std::uint32_t pixel(const std::uint8_t* rgba) {
   std::uint32_t value;
   std::memcpy(&value, rgba, sizeof value);
   return value;
 }
 
 // Plain loops, each over one kind of work, so that compilers vectorise them: 2 to 3 times as fast as the obvious ones.
-void luma_row(const std::uint8_t* rgba, std::uint8_t* __restrict y, int width) {
+TUMBLE_INTO_EACH void luma_row(const std::uint8_t* rgba, std::uint8_t* __restrict y, int width) {
   constexpr std::int32_t offset = (16 << kShift) + kHalf;
   for (int i = 0; i < width; ++i) {
     const std::uint32_t p = pixel(rgba + 4 * i);
@@ -43,7 +47,7 @@ void luma_row(const std::uint8_t* rgba, std::uint8_t* __restrict y, int width) {
   }
 }
 
-void chroma_row(const std::uint8_t* above, const std::uint8_t* below, std::uint8_t* __restrict cb,
+TUMBLE_INTO_EACH void chroma_row(const std::uint8_t* above, const std::uint8_t* below, std::uint8_t* __restrict cb,
                 std::uint8_t* __restrict cr, int width) {
   constexpr std::int32_t offset = (128 << (kShift + 2)) + 4 * kHalf;  // of sums of four pixels
   constexpr int kBlock = 256;                                         // even; small enough for the fastest cache
@@ -68,15 +72,27 @@ void chroma_row(const std::uint8_t* above, const std::uint8_t* below, std::uint8
   }
 }
 
-}  // namespace
-
-void yuv420_from_rgba(const Image& image, const Yuv420& planes) {
+TUMBLE_INTO_EACH void convert(const Image& image, const Yuv420& planes) {
   for (int v = 0; v < image.height; v += 2) {
     luma_row(image.row(v), planes.y + static_cast<std::ptrdiff_t>(v) * planes.y_stride, image.width);
     luma_row(image.row(v + 1), planes.y + static_cast<std::ptrdiff_t>(v + 1) * planes.y_stride, image.width);
     chroma_row(image.row(v), image.row(v + 1), planes.cb + static_cast<std::ptrdiff_t>(v / 2) * planes.cb_stride,
                planes.cr + static_cast<std::ptrdiff_t>(v / 2) * planes.cr_stride, image.width);
   }
+}
+
+#if defined(__x86_64__)
+[[gnu::target("avx2")]] void convert_avx2(const Image& image, const Yuv420& planes) { convert(image, planes); }
+const bool kHasAvx2 = __builtin_cpu_supports("avx2");
+#endif
+
+}  // namespace
+
+void yuv420_from_rgba(const Image& image, const Yuv420& planes) {
+#if defined(__x86_64__)
+  if (kHasAvx2) return convert_avx2(image, planes);
+#endif
+  convert(image, planes);
 }
 
 }  // namespace tumble::io
