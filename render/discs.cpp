@@ -13,7 +13,7 @@ flat out vec4 disc_look;
 flat out vec4 disc_colour;
 void main() {
   vec2 corner = vec2(gl_VertexID & 1, gl_VertexID >> 1) * 2.0 - 1.0;
-  offset = corner * (circle.z + 1.0);
+  offset = corner * (circle.z + 0.5);  // as far as anything is covered
   radius = circle.z;
   disc_look = look;
   disc_colour = colour;
