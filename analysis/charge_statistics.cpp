@@ -46,6 +46,13 @@ FlightAngles angles_of(std::span<const Flight> flights, const MillGeometry& geom
   return flight_angles(flights, edge_ring(geometry.tip_radius, geometry.mean_diameter).inner, 0.5 * geometry.radius);
 }
 
+void put_edges(std::span<const ChargeEdges> frames, std::span<ProfileRow> profile) {
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    profile[i].toe_deg = frames[i].toe[kHalf];
+    profile[i].shoulder_deg = frames[i].shoulder[kHalf];
+  }
+}
+
 double circulation_reach(const MillGeometry& geometry) { return 1.5 * geometry.mean_diameter; }
 
 ChargeStatistics::ChargeStatistics(const MillGeometry& geometry)
@@ -92,11 +99,7 @@ void ChargeStatistics::finish(ChargeMotion& motion) {
   motion.ring_occupancy = edges.occupancy;
   motion.ring_occupancy_se = edges.occupancy_se;
 
-  const std::vector<ChargeEdges> frames = edges_.finish_frames();
-  for (std::size_t i = 0; i < frames.size(); ++i) {
-    profile_[i].toe_deg = frames[i].toe[kHalf];
-    profile_[i].shoulder_deg = frames[i].shoulder[kHalf];
-  }
+  put_edges(edges_.finish_frames(), profile_);
   motion.profile = std::move(profile_);
   motion.head = mean_of_series(heads_);
   motion.field = field_.field();

@@ -25,6 +25,9 @@ struct MillGeometry {
 // Of these flights, where they leave the shell of this mill and end.
 FlightAngles angles_of(std::span<const Flight> flights, const MillGeometry& geometry);
 
+// Each frame's edges into its row.
+void put_edges(std::span<const ChargeEdges> frames, std::span<ProfileRow> profile);
+
 double circulation_reach(const MillGeometry& geometry);  // of the plane whose root is the centre of circulation
 
 // Turns balls seen frame by frame, from truth or from pictures, into toe, shoulder, head, fields and flights: one code

@@ -98,4 +98,23 @@ ChargeMotion measure_frames(const RunSetup& setup, const NextFrame& next, const 
   return measurer.finish();
 }
 
+std::vector<ProfileRow> measure_edges(const RunSetup& setup, const NextFrame& next, const Progress& progress) {
+  const MillGeometry geometry = geometry_of(setup, make_mill_shape(setup.config));
+  const Ring ring = edge_ring(geometry.tip_radius, geometry.mean_diameter);
+  EdgeStatistics edges(geometry.passage_frames);
+  std::vector<ProfileRow> rows;
+  std::vector<Disc> discs(setup.balls.size());
+  for (Frame frame; next(frame);) {
+    for (std::size_t i = 0; i < discs.size(); ++i) discs[i] = {frame.x[i], frame.y[i], setup.balls.radius[i]};
+    edges.add(ring_occupancy(discs, ring));
+    ProfileRow& row = rows.emplace_back();
+    row.frame = static_cast<int>(rows.size()) - 1;
+    row.time = frame.time;
+    row.mill_angle_deg = degrees(frame.mill_angle);
+    if (setup.frame_count > 0) report(progress, double(rows.size()) / double(setup.frame_count));
+  }
+  put_edges(edges.finish_frames(), rows);
+  return rows;
+}
+
 }  // namespace tumble::analysis

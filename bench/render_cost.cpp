@@ -52,7 +52,7 @@ void measure(const fs::path& path, const render::Style& style, const io::FilmFor
   if (style.overlay.toe) {
     const Timed timed(truth);
     std::size_t next = 0;
-    analysis::measure_frames(run.setup(), [&](Frame& frame) {
+    analysis::measure_edges(run.setup(), [&](Frame& frame) {
       if (next >= run.frame_count()) return false;
       frame = run.frame(next++);
       return true;
@@ -97,7 +97,8 @@ void measure(const fs::path& path, const render::Style& style, const io::FilmFor
   const double frames = repeat * double(run.frame_count());
   const auto each = [&](double seconds) { return 1000 * seconds / frames; };
   fmt::print(
-      "frames {} reading_ms {:.3f} truth_ms {:.3f} drawing_ms {:.3f} colours_ms {:.3f} encoding_ms {:.3f} loading_ms_once "
+      "frames {} reading_ms {:.3f} truth_ms {:.3f} drawing_ms {:.3f} colours_ms {:.3f} encoding_ms {:.3f} "
+      "loading_ms_once "
       "{:.1f} opening_ms_once {:.1f} rest_over_encoding {:.3f}\n",
       frames, each(reading), each(truth), each(drawing), each(colours), each(encoding - colours), 1000 * loading,
       1000 * opening, (reading + truth + drawing + colours + loading + opening) / (encoding - colours));

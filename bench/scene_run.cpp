@@ -1,7 +1,8 @@
 // A scene of discs in a drum, as the rendering peers read it, turned into a run file; bench/render_race.sh renders it.
 //   scene_run SCENE.f32 RUN.h5 [--frames-per-second 100] [--lifters 0]
-// SCENE.f32 is what the peers' gen_frames.py makes: int32 balls, frames; then per frame and ball x, y, theta, r, speed as
-// float32, in a drum of radius 1. Nothing was simulated: the mill turns at 0.7 of critical speed, the torque is a wave.
+// SCENE.f32 is what the peers' gen_frames.py makes: int32 balls, frames; then per frame and ball x, y, theta, r, speed
+// as float32, in a drum of radius 1. Nothing was simulated: the mill turns at 0.7 of critical speed, the torque is a
+// wave.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>

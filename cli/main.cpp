@@ -30,8 +30,7 @@ int hand_over(const char* program, char** argv) {
   const std::filesystem::path self = std::filesystem::read_symlink("/proc/self/exe", error);
   const std::filesystem::path other = self.parent_path() / program;
   execv(other.c_str(), argv);
-  return fail(other.string() + ": cannot be run (" + std::strerror(errno) + "); it belongs beside " + self.string(),
-              1);
+  return fail(other.string() + ": cannot be run (" + std::strerror(errno) + "); it belongs beside " + self.string(), 1);
 }
 
 }  // namespace

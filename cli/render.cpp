@@ -75,7 +75,7 @@ void render(Options o) {
   }
   const io::RunReader run(o.run);
   ChargeMotion truth;
-  if (!filmed && (o.plan.style.overlay.toe || o.plan.style.overlay.shoulder)) truth = measure_run(run, o);
+  if (!filmed && (o.plan.style.overlay.toe || o.plan.style.overlay.shoulder)) truth.profile = measure_run_edges(run, o);
   truth.origin = o.run.string();
   const std::size_t frames = filmed ? render_filmed_run(run, o.plan, o.look_seed, o.output, pictures, o)
                                     : render_run(run, truth, o.plan, o.output, pictures, o);

@@ -37,6 +37,14 @@ double scale_top(const io::RunReader& run, render::Colour colour) {
   return std::max(quantile_of(std::move(values), 0.99), 1e-3);
 }
 
+analysis::NextFrame frames_of(const io::RunReader& run) {
+  return [&run, next = std::size_t{0}](Frame& frame) mutable {
+    if (next >= run.frame_count()) return false;
+    frame = run.frame(next++);
+    return true;
+  };
+}
+
 constexpr std::size_t kMostWorkers = 16;
 
 // Frames of a film that are encoded by themselves: few enough that several threads have work in a short film, enough
@@ -57,15 +65,12 @@ Marks marks_at(const ChargeMotion& truth, double time, double frames_per_second)
 
 ChargeMotion measure_run(const io::RunReader& run, const CommonOptions& options) {
   ProgressLine line(options, "reading the run", "nothing was written");
-  std::size_t next = 0;
-  return analysis::measure_frames(
-      run.setup(),
-      [&](Frame& frame) {
-        if (next >= run.frame_count()) return false;
-        frame = run.frame(next++);
-        return true;
-      },
-      line.callback());
+  return analysis::measure_frames(run.setup(), frames_of(run), line.callback());
+}
+
+std::vector<ProfileRow> measure_run_edges(const io::RunReader& run, const CommonOptions& options) {
+  ProgressLine line(options, "reading the run", "nothing was written");
+  return analysis::measure_edges(run.setup(), frames_of(run), line.callback());
 }
 
 std::string picture_name(std::size_t index) { return fmt::format("frame_{:06}.png", index); }
@@ -90,8 +95,8 @@ std::size_t render_run(const io::RunReader& run, const ChargeMotion& truth, cons
 
   // Each thread takes the next part of the film, draws and encodes it all, and puts it behind those that are ready.
   const std::size_t length = part_length(count);
-  const std::size_t workers = std::min({static_cast<std::size_t>(thread_limit()), (count + length - 1) / length,
-                                        kMostWorkers});
+  const std::size_t workers =
+      std::min({static_cast<std::size_t>(thread_limit()), (count + length - 1) / length, kMostWorkers});
   std::mutex mutex;  // of all that follows
   std::size_t next = 0, drawn = 0;
   bool failed = false;
@@ -133,8 +138,7 @@ std::size_t render_run(const io::RunReader& run, const ChargeMotion& truth, cons
         if (!tell()) return;
         Frame frame = player.at(start + double(i) * step);
         const Marks marks = marks_at(truth, frame.time - run.time().front(), stored_rate);
-        const Image& image =
-            renderer.draw(frame, {marks.toe_deg, marks.shoulder_deg, run.time(), run.torque(), past});
+        const Image& image = renderer.draw(frame, {marks.toe_deg, marks.shoulder_deg, run.time(), run.torque(), past});
         if (part)
           part->write(image);
         else

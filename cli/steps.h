@@ -2,6 +2,7 @@
 #include <filesystem>
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "analysis/charge_motion.h"
 #include "cli/console.h"
@@ -18,6 +19,9 @@ namespace fs = std::filesystem;
 
 // The charge's true motion, from a run file.
 ChargeMotion measure_run(const io::RunReader& run, const CommonOptions& options);
+
+// Of it, toe and shoulder frame by frame: what their marks need.
+std::vector<ProfileRow> measure_run_edges(const io::RunReader& run, const CommonOptions& options);
 
 struct FilmPlan {
   render::Style style;

@@ -226,8 +226,8 @@ void FilmPart::Impl::fill(AVFrame& into, const Image& image) {
                                       format.width, format.height));
   }
   expect(av_frame_make_writable(&into), name, "no memory for a picture");
-  yuv420_from_rgba(image, {into.data[0], into.data[1], into.data[2], into.linesize[0], into.linesize[1],
-                           into.linesize[2]});
+  yuv420_from_rgba(image,
+                   {into.data[0], into.data[1], into.data[2], into.linesize[0], into.linesize[1], into.linesize[2]});
   into.pts = next++;
 }
 
@@ -279,9 +279,9 @@ struct FilmWriter::Impl {
   AVFormatContext* muxer = nullptr;
   AVStream* stream = nullptr;
   std::mutex mutex;
-  Encoder opened;                         // told the muxer what the film is like; the first part takes it
+  Encoder opened;                          // told the muxer what the film is like; the first part takes it
   std::unique_ptr<FilmPart::Impl> serial;  // of write(): the whole film is one part
-  std::unique_ptr<Belt> belt;             // of write(), with several threads
+  std::unique_ptr<Belt> belt;              // of write(), with several threads
   std::int64_t frames = 0;
   bool finished = false;
 };

@@ -48,7 +48,7 @@ TUMBLE_INTO_EACH void luma_row(const std::uint8_t* rgba, std::uint8_t* __restric
 }
 
 TUMBLE_INTO_EACH void chroma_row(const std::uint8_t* above, const std::uint8_t* below, std::uint8_t* __restrict cb,
-                std::uint8_t* __restrict cr, int width) {
+                                 std::uint8_t* __restrict cr, int width) {
   constexpr std::int32_t offset = (128 << (kShift + 2)) + 4 * kHalf;  // of sums of four pixels
   constexpr int kBlock = 256;                                         // even; small enough for the fastest cache
   std::int16_t r[kBlock], g[kBlock], b[kBlock];
