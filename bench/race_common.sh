@@ -1,6 +1,7 @@
 # shellcheck shell=bash
 # For race.sh and scaling.sh, which source it at the root of the repository: the peers' mill with its states.
 shopt -s inherit_errexit
+source bench/median.sh
 peers=${TUMBLE_PEERS:-../shared/peers}
 race_mill=${RACE_MILL:-build/release/bench/race_mill}
 kept=${RACE_STATES:-build/race}  # states that took minutes to make
@@ -37,13 +38,4 @@ case_of() {  # BALLS [STATE] -> folder
   local folder=$work/case$1
   [[ -d $folder ]] || gen export "${2:-$(state_of "$1")}" "$folder"
   echo "$folder"
-}
-
-# Numbers, one a line -> "median (least - most)".
-median() {
-  sort -g | awk '{ v[NR] = $1 }
-    END {
-      if (NR == 0) { printf "nothing measured"; exit }
-      printf "%.3g (%.3g - %.3g)", (v[int((NR + 1) / 2)] + v[int(NR / 2) + 1]) / 2, v[1], v[NR]
-    }'
 }

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "analysis/charge_motion.h"
 #include "analysis/free_surface.h"
 #include "core/angle.h"
 #include "core/random.h"
@@ -116,6 +117,47 @@ TEST(FillingOfDeepMill, HoldsForBallsInFlightAndForABedThatSways) {
   for (const double truth : {bed + kEach * above, bed + swaying * above})
     EXPECT_LT(std::abs(filling.value - truth), 2 * filling.se);
   EXPECT_LT(filling.se, 0.2 * filling.value);
+}
+
+TEST(MeasureEdges, AreThoseOfTheWholeMeasurement) {
+  RunSetup setup;
+  setup.config.mill.diameter = 0.5;
+  setup.config.run.frames_per_second = 100;
+  setup.mill_speed = 4;
+  setup.frame_count = 40;
+  setup.balls.radius.assign(150, 0.012);
+  setup.balls.mass.assign(150, 0.06);
+  std::vector<Frame> frames(40);
+  Random random(5);
+  for (std::size_t k = 0; k < frames.size(); ++k) {
+    Frame& f = frames[k];
+    f.time = 0.01 * double(k);
+    f.mill_angle = setup.mill_speed * f.time;
+    for (std::size_t i = 0; i < setup.balls.size(); ++i) {  // lie in the lower right, more or less
+      const double angle = radians(random.uniform(230, 340)), away = random.uniform(0.1, 0.238);
+      f.x.push_back(away * std::cos(angle));
+      f.y.push_back(away * std::sin(angle));
+    }
+    f.vx = f.vy = f.angle = f.spin = std::vector<double>(setup.balls.size(), 0.0);
+  }
+  const auto from_start = [&] {
+    return [&, next = std::size_t{0}](Frame& frame) mutable {
+      if (next == frames.size()) return false;
+      frame = frames[next++];
+      return true;
+    };
+  };
+  const std::vector<ProfileRow> whole = measure_frames(setup, from_start()).profile;
+  const std::vector<ProfileRow> edges = measure_edges(setup, from_start());
+  ASSERT_EQ(edges.size(), whole.size());
+  for (std::size_t k = 0; k < whole.size(); ++k) {
+    EXPECT_EQ(edges[k].frame, whole[k].frame);
+    EXPECT_EQ(edges[k].time, whole[k].time);
+    EXPECT_EQ(edges[k].mill_angle_deg, whole[k].mill_angle_deg);
+    EXPECT_EQ(edges[k].toe_deg, whole[k].toe_deg);
+    EXPECT_EQ(edges[k].shoulder_deg, whole[k].shoulder_deg);
+    EXPECT_FALSE(std::isnan(edges[k].toe_deg) || std::isnan(edges[k].shoulder_deg));
+  }
 }
 
 }  // namespace

@@ -31,6 +31,12 @@ done_by render run.h5 -o pictures --size 320x180 --force
 done_by render run.h5 -o filmed/ --size 320x180 --theme film --look-seed 3 --threads 1
 done_by render run.h5 -o filmed_again/ --size 320x180 --theme film --look-seed 3 --threads 2
 cmp filmed/frame_000001.png filmed_again/frame_000001.png || fail "a filmed picture depends on the number of threads"
+# Parts of a film are drawn side by side, and trails reach back over their ends.
+for threads in 1 3; do
+  done_by render run.h5 -o threads_$threads.mp4 --size 320x180 --slow 2 --overlay toe,tracks --threads $threads
+done
+cmp threads_1.mp4 threads_3.mp4 || fail "a film depends on the number of threads"
+ldd "$(dirname "$tumble")/tumble-render" | grep opencv && fail "tumble-render loads OpenCV: a rendering starts four times as slowly"
 refused 'size' render run.h5 -o film.mp4 --size 4294968576x720 # 2^32 + 1280
 
 for key in torque_N_m torque_closure_N_m; do

@@ -10,6 +10,8 @@ extern "C" {
 #include <array>
 #include <cmath>
 #include <csignal>
+#include <thread>
+#include <utility>
 #include <vector>
 
 #include "core/error.h"
@@ -188,6 +190,41 @@ TEST_F(FilmFile, BytesDoNotDependOnThreadsOrLeftovers) {
   mallopt(M_PERTURB, 0);
   EXPECT_GT(films[0].size(), 1000u);
   for (const std::string& film : films) EXPECT_TRUE(film == films[0]);
+}
+
+// Parts filled side by side or one by one, the last first: the same film, with each frame in its place.
+TEST_F(FilmFile, IsJoinedFromParts) {
+  constexpr int kFrames = 50, kLength = 20;
+  const auto write = [&](bool side_by_side) {
+    FilmWriter film(path(), small());
+    std::vector<FilmPart> parts;
+    for (int first = 0; first < kFrames; first += kLength) parts.push_back(film.part(first));
+    const auto fill = [&](std::size_t k) {
+      for (int i = int(k) * kLength; i < std::min(kFrames, (int(k) + 1) * kLength); ++i)
+        parts[k].write(picture(160, 96, i));
+      parts[k].finish();
+    };
+    std::vector<std::thread> threads;
+    for (std::size_t k = parts.size(); k-- > 0;) {
+      if (side_by_side)
+        threads.emplace_back(fill, k);
+      else
+        fill(k);
+    }
+    for (std::thread& thread : threads) thread.join();
+    for (FilmPart& part : parts) film.append(std::move(part));
+    film.finish();
+    return bytes_of(path());
+  };
+  EXPECT_TRUE(write(false) == write(true));
+  const Played played = play(path());
+  ASSERT_EQ(played.luma.size(), std::size_t{kFrames});
+  for (int i = 0; i < kFrames; ++i) {
+    EXPECT_EQ(played.time[static_cast<std::size_t>(i)], i);
+    const auto at = [&](int u) { return int(played.luma[static_cast<std::size_t>(i)][std::size_t(35 * 160 + u)]); };
+    if (3 * i + 32 >= 160) continue;
+    EXPECT_GT(at(3 * i + 4), at(3 * i + 32) + 40) << i;  // the square, and what it has not reached
+  }
 }
 
 TEST_F(FilmFile, HasItsIndexInFront) {
