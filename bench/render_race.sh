@@ -91,7 +91,7 @@ if has race; then
       fi
       : >"$work/turns"
       for _ in $(seq "$turns"); do
-        theirs=$(cpu_ms "$frames" peer "$rival" "$name" "$frames")
+        theirs=$(cpu_ms "$frames" peer "$rival" "$name" "$frames") || continue  # Xvfb may not come up in time
         medium=$(cpu_ms "$frames" film "$name" "$work/medium.mp4" --threads 1 --preset medium)
         default=$(cpu_ms "$frames" film "$name" "$work/default.mp4" --threads 1)
         echo "$theirs $medium $default" >>"$work/turns"

@@ -47,9 +47,13 @@ analysis::NextFrame frames_of(const io::RunReader& run) {
 
 constexpr std::size_t kMostWorkers = 16;
 
-// Frames of a film that are encoded by themselves: few enough that several threads have work in a short film, enough
-// that key frames are no burden; a key frame now and then also lets players jump. Hangs on the film alone.
-std::size_t part_length(std::size_t frames) { return std::clamp<std::size_t>((frames + 15) / 16, 24, 240); }
+// Frames of a film that are encoded by themselves, the same in all parts but the last: enough that their key frames are
+// no burden (of 48 they make a film some 4 % larger), few enough that several threads have work in a short film, and
+// that a player can jump. Hangs on the film alone.
+std::size_t part_length(std::size_t frames) {
+  const std::size_t parts = std::max<std::size_t>(1, frames / std::clamp<std::size_t>(frames / 16, 48, 240));
+  return (frames + parts - 1) / parts;
+}
 
 struct Marks {
   double toe_deg = kNotGiven, shoulder_deg = kNotGiven;
