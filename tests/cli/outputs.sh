@@ -33,7 +33,7 @@ done_by render run.h5 -o filmed_again/ --size 320x180 --theme film --look-seed 3
 cmp filmed/frame_000001.png filmed_again/frame_000001.png || fail "a filmed picture depends on the number of threads"
 # Parts of a film are drawn side by side, and trails reach back over their ends.
 for threads in 1 3; do
-  done_by render run.h5 -o threads_$threads.mp4 --size 320x180 --slow 2 --overlay toe,tracks --threads $threads
+  done_by render run.h5 -o threads_$threads.mp4 --size 320x180 --slow 3 --overlay toe,tracks --threads $threads
 done
 cmp threads_1.mp4 threads_3.mp4 || fail "a film depends on the number of threads"
 ldd "$(dirname "$tumble")/tumble-render" | grep opencv && fail "tumble-render loads OpenCV: a rendering starts four times as slowly"
