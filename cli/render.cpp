@@ -14,14 +14,27 @@
 namespace tumble::cli {
 namespace {
 
-const std::map<std::string, render::Colour> kColours = {{"speed", render::Colour::kSpeed},
-                                                        {"size", render::Colour::kSize},
-                                                        {"spin", render::Colour::kSpin},
-                                                        {"steel", render::Colour::kSteel}};
+const std::map<std::string, render::Colour> kColours = {
+    {"speed", render::Colour::kSpeed}, {"size", render::Colour::kSize},           {"spin", render::Colour::kSpin},
+    {"steel", render::Colour::kSteel}, {"residence", render::Colour::kResidence}, {"force", render::Colour::kForce}};
+
+const std::map<std::string, bool render::Overlay::*> kOverlays = {{"toe", &render::Overlay::toe},
+                                                                  {"shoulder", &render::Overlay::shoulder},
+                                                                  {"tracks", &render::Overlay::tracks},
+                                                                  {"velocity", &render::Overlay::velocity},
+                                                                  {"chains", &render::Overlay::chains},
+                                                                  {"occupancy", &render::Overlay::occupancy},
+                                                                  {"streamlines", &render::Overlay::streamlines},
+                                                                  {"mean_velocity", &render::Overlay::mean_velocity},
+                                                                  {"surface", &render::Overlay::surface},
+                                                                  {"head", &render::Overlay::head},
+                                                                  {"circulation", &render::Overlay::circulation},
+                                                                  {"departure", &render::Overlay::departure},
+                                                                  {"impact", &render::Overlay::impact}};
 
 struct Options : CommonOptions {
   fs::path run, output;
-  std::string size = "1280x720", overlay = "toe,shoulder", colour = "speed", theme = "default";
+  std::string size = "1280x720", overlay = "toe,shoulder", colour = "speed", theme = "dark";
   std::uint64_t look_seed = 1;
   double fps = 60;
   FilmPlan plan;
@@ -29,29 +42,34 @@ struct Options : CommonOptions {
 
 render::Overlay parse_overlay(const std::string& list) {
   render::Overlay overlay;
-  overlay.toe = overlay.shoulder = overlay.tracks = overlay.velocity = false;
+  const auto set_all = [&](bool shown) {
+    for (const auto& [name, member] : kOverlays) overlay.*member = shown;
+  };
+  set_all(false);
   std::istringstream words(list);
   for (std::string word; std::getline(words, word, ',');) {
-    if (word == "toe")
-      overlay.toe = true;
-    else if (word == "shoulder")
-      overlay.shoulder = true;
-    else if (word == "tracks")
-      overlay.tracks = true;
-    else if (word == "velocity")
-      overlay.velocity = true;
-    else if (word != "none" && !word.empty())
-      throw InputError("--overlay", "\"" + word + "\" is unknown; give any of toe,shoulder,tracks,velocity or none");
+    if (const auto found = kOverlays.find(word); found != kOverlays.end()) {
+      overlay.*found->second = true;
+    } else if (word == "all") {
+      set_all(true);
+    } else if (word != "none" && !word.empty()) {
+      std::string known;
+      for (const auto& [name, member] : kOverlays) known += (known.empty() ? "" : ",") + name;
+      throw InputError("--overlay", "\"" + word + "\" is unknown; give any of " + known + ", or all, or none");
+    }
   }
   return overlay;
 }
 
-enum class Theme { kDefault, kFilm };
-const std::map<std::string, Theme> kThemes = {{"default", Theme::kDefault}, {"film", Theme::kFilm}};
+enum class Theme { kDark, kLight, kFilm };
+const std::map<std::string, Theme> kThemes = {
+    {"dark", Theme::kDark}, {"default", Theme::kDark}, {"light", Theme::kLight}, {"film", Theme::kFilm}};
 
 void render(Options o) {
   limit_threads(o.threads);
-  const bool filmed = parse_name(o.theme, "--theme", kThemes) == Theme::kFilm;
+  const Theme theme = parse_name(o.theme, "--theme", kThemes);
+  const bool filmed = theme == Theme::kFilm;
+  o.plan.style.theme = theme == Theme::kLight ? render::ThemeName::kLight : render::ThemeName::kDark;
   parse_size(o.size, "--size", o.plan.format.width, o.plan.format.height);
   parse_rate(o.fps, "--fps", o.plan.format.fps_numerator, o.plan.format.fps_denominator);
   if (!(o.plan.style.slow >= 0.01 && o.plan.style.slow <= 1e4))
@@ -75,7 +93,10 @@ void render(Options o) {
   }
   const io::RunReader run(o.run);
   ChargeMotion truth;
-  if (!filmed && (o.plan.style.overlay.toe || o.plan.style.overlay.shoulder)) truth = measure_run(run, o);
+  const render::Style& style = o.plan.style;
+  if (!filmed && (style.overlay.toe || style.overlay.shoulder || render::shows_mean(style.overlay) ||
+                  render::shows_residence(style)))
+    truth = measure_run(run, o);
   truth.origin = o.run.string();
   const std::size_t frames = filmed ? render_filmed_run(run, o.plan, o.look_seed, o.output, pictures, o)
                                     : render_run(run, truth, o.plan, o.output, pictures, o);
@@ -96,11 +117,16 @@ void add_render(CLI::App& app) {
   verb->add_option("--size", o->size, "Picture size in pixels")->capture_default_str();
   verb->add_option("--fps", o->fps, "Film frames per second")->capture_default_str();
   verb->add_option("--slow", o->plan.style.slow, "How many times slower than true time")->capture_default_str();
-  verb->add_option("--colour", o->colour, "Colour of the balls: speed, size, spin or steel")->capture_default_str();
-  verb->add_option("--overlay", o->overlay, "Any of toe,shoulder,tracks,velocity, or none")->capture_default_str();
+  verb->add_option("--colour", o->colour, "Colour of the balls: speed, size, spin, steel, residence or force")
+      ->capture_default_str();
+  verb->add_option("--overlay", o->overlay,
+                   "Any of toe,shoulder,tracks,velocity,chains (contact forces) and, of the run's mean, occupancy,"
+                   "streamlines,mean_velocity,surface,head,circulation,departure,impact; or all, or none")
+      ->capture_default_str();
   verb->add_flag("--mirror", o->plan.style.mirror, "See the mill from its other end: it turns clockwise");
-  verb->add_option("--theme", o->theme,
-                   "default, or film: as a laboratory's camera sees the mill, without marks, colours and text")
+  verb->add_option(
+          "--theme", o->theme,
+          "dark, light (for paper), or film: as a laboratory's camera sees the mill, without marks, colours and text")
       ->capture_default_str();
   verb->add_option("--look-seed", o->look_seed, "Which light and materials the film theme takes")
       ->capture_default_str();

@@ -10,6 +10,7 @@
 #include <memory>
 #include <vector>
 
+#include "cli/ball_insight.h"
 #include "cli/run_player.h"
 #include "core/angle.h"
 #include "core/error.h"
@@ -78,7 +79,11 @@ std::size_t render_run(const io::RunReader& run, const ChargeMotion& truth, cons
   if (!std::isnan(plan.seconds)) span = std::min(span, plan.seconds);
   const double step = 1 / (film_rate * plan.style.slow);
   const auto count = static_cast<std::size_t>(std::floor(span / step + 1e-6)) + 1;
-  const double top = scale_top(run, plan.style.colour);
+  BallInsight insight(run, truth, plan.style);
+  const bool by_insight =
+      plan.style.colour == render::Colour::kResidence || plan.style.colour == render::Colour::kForce;
+  const double top = by_insight ? insight.colour_top() : scale_top(run, plan.style.colour);
+  const double force_top = plan.style.overlay.chains ? insight.force_top() : 1;
   const double stored_rate = run.setup().config.run.frames_per_second;
 
   // Several renderers draw a batch of frames side by side; then the batch is written in order.
@@ -88,6 +93,8 @@ std::size_t render_run(const io::RunReader& run, const ChargeMotion& truth, cons
   for (std::size_t w = 0; w < workers; ++w) {
     renderers.push_back(std::make_unique<render::Renderer>(run.setup(), plan.style));
     renderers.back()->set_scale(0, top);
+    renderers.back()->set_force_scale(force_top);
+    if (render::shows_mean(plan.style.overlay)) renderers.back()->set_mean(truth);
   }
   std::unique_ptr<io::FilmWriter> film;
   if (!as_pictures) film = std::make_unique<io::FilmWriter>(output.string(), plan.format);
@@ -100,6 +107,7 @@ std::size_t render_run(const io::RunReader& run, const ChargeMotion& truth, cons
       plan.style.overlay.tracks ? static_cast<std::size_t>(std::ceil(renderers[0]->trail_seconds() / step)) : 0;
   std::vector<Image> images(workers * kEach);
   std::vector<Frame> frames(workers * kEach);
+  std::vector<BallInsight::Moment> insights(workers * kEach);
   for (std::size_t from = 0; from < count; from += images.size()) {
     report(progress, double(from) / double(count));
     const std::size_t n = std::min(images.size(), count - from);
@@ -108,13 +116,18 @@ std::size_t render_run(const io::RunReader& run, const ChargeMotion& truth, cons
       for (std::size_t k = from > trail ? from - trail : 0; k < from; ++k)
         before.push_back(player.at(start + double(k) * step));
     const std::size_t lead = before.size();
-    for (std::size_t i = 0; i < n; ++i) frames[i] = player.at(start + double(from + i) * step);
+    for (std::size_t i = 0; i < n; ++i) {
+      frames[i] = player.at(start + double(from + i) * step);
+      insights[i] = insight.at(frames[i].time);
+    }
     if (trail > 0) before.insert(before.end(), frames.begin(), frames.begin() + static_cast<std::ptrdiff_t>(n));
 
     parallel_for(workers, 1, [&](std::size_t w, std::size_t) {
       for (std::size_t i = w * kEach; i < std::min(n, (w + 1) * kEach); ++i) {
         const Marks marks = marks_at(truth, frames[i].time - run.time().front(), stored_rate);
         render::Moment moment{marks.toe_deg, marks.shoulder_deg, run.time(), run.torque(), {}};
+        moment.contacts = insights[i].contacts;
+        moment.of_ball = insights[i].of_ball;
         if (trail > 0) {
           const std::size_t here = lead + i, first = here > trail ? here - trail : 0;
           moment.past = std::span<const Frame>(before).subspan(first, here - first);

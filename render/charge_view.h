@@ -1,6 +1,7 @@
 #pragma once
 #include <span>
 
+#include "core/contact_force.h"
 #include "core/frame.h"
 #include "render/canvas.h"
 #include "render/renderer.h"
@@ -10,22 +11,31 @@ namespace tumble::render {
 // What a ball's colour stands for, and where the scale begins and ends.
 struct ColourScale {
   Colour by = Colour::kSpeed;
-  double low = 0, high = 1;  // [m/s], [rad/s] or, by size, the radii [m]
+  double low = 0, high = 1;  // [m/s], [rad/s], [s], [N] or, by size, the radii [m]
+  const Theme* theme = &dark_theme();
   Rgba colour_of(double value) const;
   const Palette& palette() const;
 };
 
-// The quantity that colours ball i of a frame; NaN by Colour::kSteel.
-double coloured_value(Colour by, const Balls& balls, const Frame& frame, std::size_t i);
+// What is looked at of the charge.
+struct ChargeView {
+  const Balls& balls;
+  const Frame& frame;
+  std::span<const double> of_ball;  // of the frame, where no frame holds what colours the balls (Moment)
+  const ColourScale& scale;
+};
 
-void draw_balls(Canvas& canvas, const Balls& balls, const Frame& frame, const ColourScale& scale);
+void draw_balls(Canvas& canvas, const ChargeView& charge);
 
 // Paths of the last `seconds`, fading into the past.
-void draw_trails(Canvas& canvas, const Balls& balls, const Frame& frame, std::span<const Frame> past, double seconds,
-                 const ColourScale& scale);
+void draw_trails(Canvas& canvas, const ChargeView& charge, std::span<const Frame> past, double seconds);
 
 // One arrow a ball, `seconds` of its motion long.
 void draw_velocities(Canvas& canvas, const Balls& balls, const Frame& frame, double seconds);
+
+// Lines from ball to touching ball, and to the shell, as wide and as bright as the normal force; widest at `high` [N].
+void draw_chains(Canvas& canvas, const Frame& frame, std::span<const ContactForce> contacts, double high);
+double chain_width(const Canvas& canvas, double share);  // of that force [px]
 
 // An arrow from `a` to `b`, outlined so that it reads on any ground; nothing where it would be a dot.
 void draw_arrow(Canvas& canvas, const Vec2& a, const Vec2& b, double width, Rgba colour);

@@ -1,12 +1,29 @@
 #pragma once
+#include <span>
+#include <string_view>
+
 #include "core/mill_shape.h"
 #include "render/canvas.h"
+#include "render/renderer.h"
 
 namespace tumble::render {
 
-// Toe and shoulder outside the rim, as the literature draws them: a pointer and its angle each, and an arc over the
-// charge between them. Nothing is drawn over the charge. Angles in degrees, NaN = no mark.
-void draw_toe_and_shoulder(Canvas& canvas, const MillShape& shape, double toe_deg, double shoulder_deg);
+// A place on the shell's circle that has a name.
+struct RimMark {
+  const char* name = "";
+  double angle_deg = kNotGiven;  // NaN = no mark
+  Rgba colour;
+};
+
+// Outside the rim, as the literature draws them: a pointer each, with its name and angle. Labels that would cover one
+// another make way along the rim, later ones for earlier ones. Nothing is drawn over the charge.
+void draw_rim_marks(Canvas& canvas, const MillShape& shape, std::span<const RimMark> marks);
+
+// The charge's extent: an arc outside the rim from toe to shoulder; none where one of them is NaN.
+void draw_charge_arc(Canvas& canvas, const MillShape& shape, double toe_deg, double shoulder_deg);
+
+// Letters that can be read on balls.
+void add_on_charge(Canvas& canvas, std::string_view words, double x, double baseline, const TextStyle& style);
 
 // A curved arrow that shows which way the mill turns; nothing for a mill that stands still. speed in [rad/s].
 void draw_rotation(Canvas& canvas, const MillShape& shape, double speed);
@@ -14,5 +31,8 @@ void draw_rotation(Canvas& canvas, const MillShape& shape, double speed);
 // A bar of a round length in the lower left corner, with the key of the velocity arrows (seconds of motion an arrow
 // is long) when those are drawn; NaN without them.
 void draw_scale_bar(Canvas& canvas, const MillShape& shape, double arrow_seconds);
+
+// In the upper left corner, what the lines over the charge stand for. `widest_chain`: the force drawn as that [N].
+void draw_key(Canvas& canvas, const Overlay& overlay, double widest_chain);
 
 }  // namespace tumble::render

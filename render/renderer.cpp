@@ -13,6 +13,7 @@
 #include "render/canvas.h"
 #include "render/charge_view.h"
 #include "render/marks.h"
+#include "render/mean_view.h"
 #include "render/mill_view.h"
 #include "render/offscreen_context.h"
 #include "render/panel.h"
@@ -33,11 +34,13 @@ const Style& checked(const Style& style) {
   return style;
 }
 
+const Theme& theme_of(const Style& style) { return style.theme == ThemeName::kLight ? light_theme() : dark_theme(); }
+
 // Where a colour scale ends as long as nobody has seen the whole run: the speed of a fall through one mill radius,
 // the spin of the smallest ball rolling on the shell.
 ColourScale first_scale(const RunSetup& setup, const Style& style) {
   const double radius = setup.config.mill.diameter / 2;
-  ColourScale scale{style.colour, 0, std::sqrt(2 * kGravity * radius)};
+  ColourScale scale{style.colour, 0, std::sqrt(2 * kGravity * radius), &theme_of(style)};
   const auto& radii = setup.balls.radius;
   if (radii.empty()) return scale;
   const auto [smallest, largest] = std::minmax_element(radii.begin(), radii.end());
@@ -58,11 +61,13 @@ struct Renderer::Impl {
       : setup(run),
         style(checked(wanted)),
         shape(make_mill_shape(run.config)),
+        theme(theme_of(style)),
         context(style.width, style.height),
         scale(first_scale(run, style)) {
     const CurrentContext current(context);
     canvas = std::make_unique<Canvas>(style.width, style.height,
-                                      make_layout(style.width, style.height, shape, style.overlay.text, style.mirror));
+                                      make_layout(style.width, style.height, shape, style.overlay.text, style.mirror),
+                                      theme);
     coming = std::make_unique<StillLayer>(style.width, style.height);
     been = std::make_unique<StillLayer>(style.width, style.height);
     glViewport(0, 0, style.width, style.height);
@@ -84,12 +89,16 @@ struct Renderer::Impl {
 
   void paint_still(StillLayer& layer, bool pale);
   void paint_still_layers(const Moment& moment);
+  void draw_rim(const Moment& moment);
 
   RunSetup setup;
   Style style;
   MillShape shape;
+  const Theme& theme;
   OffscreenContext context;
   ColourScale scale;
+  double widest_chain = 1;  // [N]
+  MeanView mean;
   TorqueTrace trace;
   std::optional<TorquePlot> plot;
   bool is_painted = false;  // the still layers, for the scale and trace above
@@ -99,12 +108,14 @@ struct Renderer::Impl {
 
 void Renderer::Impl::paint_still(StillLayer& layer, bool pale) {
   const auto share = [](std::uint8_t channel) { return static_cast<float>(channel) / 255.0f; };
-  glClearColor(share(ink::kGround.r), share(ink::kGround.g), share(ink::kGround.b), 1.0f);
+  glClearColor(share(canvas->theme.ground.r), share(canvas->theme.ground.g), share(canvas->theme.ground.b), 1.0f);
   glClear(GL_COLOR_BUFFER_BIT);
   draw_shell(*canvas, shape);
   if (style.overlay.text) {
     draw_rotation(*canvas, shape, setup.mill_speed);
-    draw_scale_bar(*canvas, shape, style.overlay.velocity ? arrow_seconds() : kNotGiven);
+    const bool arrows = style.overlay.velocity || style.overlay.mean_velocity;
+    draw_scale_bar(*canvas, shape, arrows ? arrow_seconds() : kNotGiven);
+    draw_key(*canvas, style.overlay, widest_chain);
     draw_still_panel(*canvas, panel(), pale);
   }
   flush();
@@ -123,18 +134,44 @@ void Renderer::Impl::paint_still_layers(const Moment& moment) {
   is_painted = true;
 }
 
+void Renderer::Impl::draw_rim(const Moment& moment) {
+  const Overlay& shown = style.overlay;
+  const auto angle = [](bool wanted, double value) { return wanted ? value : kNotGiven; };
+  const double toe = angle(shown.toe, moment.toe_deg), shoulder = angle(shown.shoulder, moment.shoulder_deg);
+  const RimMark marks[] = {{"departure", angle(shown.departure, mean.departure_deg), theme.second},
+                           {"impact", angle(shown.impact, mean.impact_toe_deg), theme.second},
+                           {"toe", toe, theme.accent},
+                           {"shoulder", shoulder, theme.accent}};
+  draw_charge_arc(*canvas, shape, toe, shoulder);
+  draw_rim_marks(*canvas, shape, marks);
+}
+
+bool shows_mean(const Overlay& o) {
+  return o.occupancy || o.streamlines || o.mean_velocity || o.surface || o.head || o.circulation || o.departure ||
+         o.impact;
+}
+bool shows_forces(const Style& style) { return style.overlay.chains || style.colour == Colour::kForce; }
+bool shows_residence(const Style& style) { return style.colour == Colour::kResidence; }
+
 Renderer::Renderer(const RunSetup& setup, const Style& style) : impl_(std::make_unique<Impl>(setup, style)) {}
 Renderer::~Renderer() = default;
 
 void Renderer::set_scale(double low, double high) {
   ColourScale& scale = impl_->scale;
-  if (scale.by == Colour::kSpeed) {
+  if (scale.by != Colour::kSpin && scale.by != Colour::kSize) {
     scale.low = low;
     scale.high = high;
   } else if (scale.by == Colour::kSpin) {  // pale is zero
     scale.high = std::max(std::abs(low), std::abs(high));
     scale.low = -scale.high;
   }
+  impl_->is_painted = false;
+}
+
+void Renderer::set_mean(const ChargeMotion& motion) { impl_->mean = make_mean_view(motion, impl_->style.overlay); }
+
+void Renderer::set_force_scale(double high) {
+  impl_->widest_chain = high;
   impl_->is_painted = false;
 }
 
@@ -153,13 +190,15 @@ const Image& Renderer::draw(const Frame& frame, const Moment& moment) {
       my.been->restore({box.left, box.top, std::min(my.plot->x_of(frame.time), box.right), box.bottom});
     }
     draw_lifters(canvas, my.shape, frame.mill_angle);
-    if (overlay.tracks) draw_trails(canvas, my.setup.balls, frame, moment.past, my.trail_seconds(), my.scale);
+    const ChargeView charge{my.setup.balls, frame, moment.of_ball, my.scale};
+    if (overlay.tracks) draw_trails(canvas, charge, moment.past, my.trail_seconds());
     canvas.meshes.flush();
-    draw_balls(canvas, my.setup.balls, frame, my.scale);
+    draw_balls(canvas, charge);
     canvas.discs.flush();
+    if (overlay.chains) draw_chains(canvas, frame, moment.contacts, my.widest_chain);
+    draw_mean(canvas, my.shape, my.mean, overlay, my.arrow_seconds());
     if (overlay.velocity) draw_velocities(canvas, my.setup.balls, frame, my.arrow_seconds());
-    draw_toe_and_shoulder(canvas, my.shape, overlay.toe ? moment.toe_deg : kNotGiven,
-                          overlay.shoulder ? moment.shoulder_deg : kNotGiven);
+    my.draw_rim(moment);
     if (overlay.text) draw_moving_panel(canvas, my.panel(), frame);
     my.flush();
   }
