@@ -35,4 +35,12 @@ double BedTimes::residence(std::size_t ball, double time) const {
   return std::max(0.0, time - (next == flights.begin() ? begin_ : (next - 1)->to));
 }
 
+std::vector<double> BedTimes::stays() const {
+  std::vector<double> lengths;
+  for (const auto& of_ball : flights_)
+    for (std::size_t k = 1; k < of_ball.size(); ++k)
+      lengths.push_back(std::max(0.0, of_ball[k].from - of_ball[k - 1].to));
+  return lengths;
+}
+
 }  // namespace tumble::analysis

@@ -18,6 +18,9 @@ class BedTimes {
   // more is not known. Hangs on the run alone, not on which part of it is looked at.
   double residence(std::size_t ball, double time) const;
 
+  // Lengths of the stays between two flights of a ball [s].
+  std::vector<double> stays() const;
+
  private:
   struct Span {
     double from = 0, to = 0;  // of a flight [s]

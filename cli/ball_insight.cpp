@@ -62,27 +62,17 @@ BallInsight::Moment BallInsight::at(double time) {
   return moment;
 }
 
-template <class Values>
-double BallInsight::top_of(const Values& values_of_frame) {
-  std::vector<double> values;
-  const std::size_t step = std::max<std::size_t>(1, run_.frame_count() / 50);
-  for (std::size_t i = 0; i < run_.frame_count(); i += step) {
-    const std::vector<double> some = values_of_frame(i);
-    values.insert(values.end(), some.begin(), some.end());
-  }
-  return values.empty() ? 1 : std::max(quantile_of(std::move(values), 0.99), 1e-3);
-}
-
-double BallInsight::colour_top() {
-  return top_of([this](std::size_t i) { return at(run_.time()[i]).of_ball; });
+double BallInsight::residence_top() const {
+  const double usual = quantile_of(bed_->stays(), 0.95);
+  return usual > 0 ? usual : std::max(run_.time().back() - run_.time().front(), 1e-3);
 }
 
 double BallInsight::force_top() {
-  return top_of([this](std::size_t i) {
-    std::vector<double> forces;
+  std::vector<double> forces;
+  const std::size_t step = std::max<std::size_t>(1, run_.frame_count() / 50);
+  for (std::size_t i = 0; i < run_.frame_count(); i += step)
     for (const ContactForce& c : stored(i)) forces.push_back(c.normal);
-    return forces;
-  });
+  return forces.empty() ? 1 : std::max(quantile_of(std::move(forces), 0.99), 1e-3);
 }
 
 }  // namespace tumble::cli

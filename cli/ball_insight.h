@@ -24,14 +24,12 @@ class BallInsight {
   // are far too coarse for overlaps.
   Moment at(double time);
 
-  // Of the whole run: ends of the scales for colours and chains; what one in a hundred exceeds.
-  double colour_top();
-  double force_top();
+  // Ends of the scales, of the whole run.
+  double residence_top() const;  // which one stay in twenty exceeds [s]
+  double force_top();            // of colours and chains, which one contact in a hundred exceeds [N]
 
  private:
   const std::vector<ContactForce>& stored(std::size_t frame);
-  template <class Values>
-  double top_of(const Values& values_of_frame);
 
   const io::RunReader& run_;
   render::Style style_;

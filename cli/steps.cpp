@@ -80,10 +80,10 @@ std::size_t render_run(const io::RunReader& run, const ChargeMotion& truth, cons
   const double step = 1 / (film_rate * plan.style.slow);
   const auto count = static_cast<std::size_t>(std::floor(span / step + 1e-6)) + 1;
   BallInsight insight(run, truth, plan.style);
-  const bool by_insight =
-      plan.style.colour == render::Colour::kResidence || plan.style.colour == render::Colour::kForce;
-  const double top = by_insight ? insight.colour_top() : scale_top(run, plan.style.colour);
-  const double force_top = plan.style.overlay.chains ? insight.force_top() : 1;
+  const double force_top = render::shows_forces(plan.style) ? insight.force_top() : 1;
+  const double top = plan.style.colour == render::Colour::kForce       ? force_top
+                     : plan.style.colour == render::Colour::kResidence ? insight.residence_top()
+                                                                       : scale_top(run, plan.style.colour);
   const double stored_rate = run.setup().config.run.frames_per_second;
 
   // Several renderers draw a batch of frames side by side; then the batch is written in order.

@@ -169,10 +169,10 @@ void draw_key(Canvas& canvas, const Overlay& overlay, double widest_chain) {
   };
   if (overlay.surface) row(canvas.theme.accent, canvas.stroke(2.6), "free surface");
   if (overlay.streamlines) row(canvas.theme.flow, canvas.stroke(1.6), "mean flow");
-  if (overlay.occupancy) row(with_alpha(canvas.theme.text, 0.8), canvas.stroke(1.4), "occupancy");
+  if (overlay.occupancy) row(canvas.theme.trace, canvas.stroke(1.8), "occupancy");
   if (overlay.chains) {
     const double force = round_number_below(widest_chain);
-    row(canvas.theme.force, chain_width(canvas, force / widest_chain), fmt::format("{:g} N", force));
+    row(canvas.theme.force, chain_width(canvas, force / widest_chain), fmt::format("force {:g} N", force));
   }
 }
 

@@ -14,7 +14,7 @@ namespace tumble::render {
 namespace {
 
 constexpr int kStreamlines = 8;
-constexpr double kLeastLine = 0.25;    // length of a line that is drawn, in shell radii: shorter ones are noise
+constexpr double kLeastLine = 0.4;    // length of a line that is drawn, in shell radii: shorter ones are noise
 constexpr int kArrowEvery = 2;         // cells
 constexpr double kLeastCovered = 0.1;  // occupancy from which a cell's mean velocity gets an arrow
 
@@ -40,7 +40,7 @@ std::vector<Vec2> seen(const Canvas& canvas, const Contour& line) {
 }
 
 void outlined(Canvas& canvas, std::span<const Vec2> points, double width, Rgba colour) {
-  canvas.meshes.polyline(points, width + 2 * canvas.stroke(1.1), with_alpha(canvas.theme.halo, 0.55));
+  canvas.meshes.polyline(points, width + 2 * canvas.stroke(1.1), with_alpha(canvas.theme.halo, 0.7));
   canvas.meshes.polyline(points, width, colour);
 }
 
@@ -65,12 +65,11 @@ void draw_heads(Canvas& canvas, std::span<const Vec2> points, Rgba colour) {
 }
 
 void draw_occupancy(Canvas& canvas, const MeanView& mean) {
-  const TextStyle style{canvas.letter(11), canvas.theme.text, Weight::kBold, Align::kCentre};
+  const TextStyle style{canvas.letter(11.5), canvas.theme.trace, Weight::kBold, Align::kCentre};
   for (const auto& [level, lines] : mean.occupancy) {
     const Contour* longest = nullptr;
     for (const Contour& line : lines) {
-      outlined(canvas, seen(canvas, line), canvas.stroke(0.8 + 1.4 * level),
-               with_alpha(canvas.theme.text, 0.35 + 0.6 * level));
+      outlined(canvas, seen(canvas, line), canvas.stroke(1.0 + 1.6 * level), canvas.theme.trace);
       if (!longest || line.points.size() > longest->points.size()) longest = &line;
     }
     if (!longest) continue;
@@ -98,20 +97,21 @@ void draw_arrows(Canvas& canvas, const MeanView& mean, double seconds) {
   }
 }
 
-// As wide as the mill is at that height, dashed: the charge's head is a height, not a place.
+// As wide as the mill is at that height, dashed: the charge's head is a height, not a place. It is named on the side
+// where the mill goes down, below the line: there balls are fewest.
 void draw_head(Canvas& canvas, const MillShape& shape, double head) {
   const Camera& camera = canvas.layout.camera;
   const double half = std::sqrt(std::max(0.0, shape.tip_radius * shape.tip_radius - head * head));
-  const Vec2 from = camera.image_from_mill(camera.mirror ? half : -half, head);
-  const Vec2 to = camera.image_from_mill(camera.mirror ? -half : half, head);
+  const double reach = half * camera.pixels_per_metre;
+  const Vec2 middle = camera.image_from_mill(0, head);
   const double dash = canvas.px(9);
-  for (double x = from.x(); x < to.x(); x += 2 * dash) {
-    const Vec2 part[] = {{x, from.y()}, {std::min(x + dash, to.x()), from.y()}};
+  for (double x = -reach; x < reach; x += 2 * dash) {
+    const Vec2 part[] = {middle + Vec2(x, 0), middle + Vec2(std::min(x + dash, reach), 0)};
     outlined(canvas, part, canvas.stroke(1.5), canvas.theme.second);
   }
   const TextStyle style{canvas.letter(12.5), canvas.theme.second, Weight::kBold, Align::kCentre};
-  add_on_charge(canvas, fmt::format("head {:.0f} mm", 1000 * head), (from.x() + to.x()) / 2, from.y() - canvas.px(7),
-                style);
+  const double x = middle.x() + (camera.mirror ? 0.45 : -0.45) * reach;
+  add_on_charge(canvas, fmt::format("head {:.0f} mm", 1000 * head), x, middle.y() + canvas.px(6) + style.size, style);
 }
 
 void draw_centre(Canvas& canvas, double x, double y) {
@@ -126,6 +126,21 @@ void draw_centre(Canvas& canvas, double x, double y) {
   }
   const TextStyle style{canvas.letter(12.5), canvas.theme.second, Weight::kBold, Align::kLeft};
   add_on_charge(canvas, "CoC", at.x() + arm + canvas.px(3), at.y() - canvas.px(5), style);
+}
+
+// Where single balls lie in the lifters' pockets the surface leaps from one to the other: no line joins these.
+std::vector<Contour> surface_pieces(const ChargeMotion& motion) {
+  const double leap = 0.12 * motion.mill_radius;
+  std::vector<Contour> pieces(1);
+  for (const SurfacePoint& p : motion.surface) {
+    const Eigen::Vector2d at(p.x, p.y);
+    auto& now = pieces.back().points;
+    if (!now.empty() && (at - now.back()).norm() > leap) pieces.emplace_back();
+    pieces.back().points.push_back(at);
+  }
+  std::erase_if(pieces, [](const Contour& piece) { return piece.points.size() < 3; });
+  for (Contour& piece : pieces) piece = rounded(piece);
+  return pieces;
 }
 
 }  // namespace
@@ -147,7 +162,7 @@ MeanView make_mean_view(const ChargeMotion& motion, const Overlay& wanted) {
         view.streamlines.push_back(std::move(line));
     }
   }
-  for (const SurfacePoint& p : motion.surface) view.surface.emplace_back(p.x, p.y);
+  if (wanted.surface) view.surface = surface_pieces(motion);
   if (wanted.mean_velocity) view.field = field;
   view.head = motion.head.value;
   view.centre_x = motion.centre_of_circulation_x.value;
@@ -168,7 +183,9 @@ void draw_mean(Canvas& canvas, const MillShape& shape, const MeanView& mean, con
     }
   }
   if (overlay.mean_velocity) draw_arrows(canvas, mean, arrow_seconds);
-  if (overlay.surface) outlined(canvas, seen(canvas, {mean.surface, false}), canvas.stroke(2.6), canvas.theme.accent);
+  if (overlay.surface)
+    for (const Contour& piece : mean.surface)
+      outlined(canvas, seen(canvas, piece), canvas.stroke(2.6), canvas.theme.accent);
   if (overlay.head && !std::isnan(mean.head)) draw_head(canvas, shape, mean.head);
   if (overlay.circulation && !std::isnan(mean.centre_x + mean.centre_y))
     draw_centre(canvas, mean.centre_x, mean.centre_y);

@@ -17,7 +17,7 @@ struct MeanView {
   };
   std::vector<Level> occupancy;      // at 0.2, 0.4, 0.6, 0.8
   std::vector<Contour> streamlines;  // equal flow between neighbours, in the flow's direction
-  std::vector<Eigen::Vector2d> surface;
+  std::vector<Contour> surface;
   Field field;                                        // for the arrows
   double head = kNotGiven;                            // [m]
   double centre_x = kNotGiven, centre_y = kNotGiven;  // of circulation [m]

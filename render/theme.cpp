@@ -16,7 +16,7 @@ const Theme& dark_theme() {
       .second = {120, 214, 208},
       .trace = {111, 190, 230},
       .halo = {8, 10, 13},
-      .force = {255, 214, 150},
+      .force = {255, 112, 86},
       .flow = {236, 240, 245},
       .plate_brightness = 1,
       .magnitude = blend({{74, 82, 160},
@@ -43,9 +43,9 @@ const Theme& light_theme() {
       .second = {0, 104, 112},
       .trace = {18, 98, 158},
       .halo = {255, 255, 255},
-      .force = {150, 22, 40},
+      .force = {196, 24, 34},
       .flow = {22, 27, 34},
-      .plate_brightness = 1.25,
+      .plate_brightness = 1.6,
       // From pale to dark would turn slow balls into fast ones for whoever knows the dark picture: the hues keep their
       // order, and the bright end stays dark enough for a trail on paper.
       .magnitude =
