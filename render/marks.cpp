@@ -20,6 +20,17 @@ double rim_radius(const Canvas& canvas, const MillShape& shape) {
 
 Vec2 centre_of(const Canvas& canvas) { return {canvas.layout.camera.centre_u, canvas.layout.camera.centre_v}; }
 
+// Corners left of the mill, above and below it, where scale and key stand: near the mill, and inside the picture.
+double corner_left(const Canvas& canvas) {
+  return std::max(canvas.layout.picture.left + canvas.px(28), canvas.layout.camera.centre_u - canvas.px(372));
+}
+double corner_top(const Canvas& canvas) {
+  return std::max(canvas.layout.picture.top + canvas.px(34), canvas.layout.camera.centre_v - canvas.px(326));
+}
+double corner_bottom(const Canvas& canvas) {
+  return std::min(canvas.layout.picture.bottom - canvas.px(30), canvas.layout.camera.centre_v + canvas.px(330));
+}
+
 // The same direction as an angle in the picture: a mirrored mill is seen from its other end.
 double angle_in_picture(const Canvas& canvas, double angle_rad) {
   return canvas.layout.camera.mirror ? kPi - angle_rad : angle_rad;
@@ -39,7 +50,7 @@ struct Label {
         value_width(canvas.text.width(value, large)) {
     const Vec2 out = canvas.layout.camera.direction(radians(at_deg));
     one_line = std::abs(out.y()) > 0.86;
-    line = one_line ? 0 : 1.12 * small.size;
+    line = one_line ? 0 : 1.28 * small.size;
     const double width = one_line ? name_width + canvas.px(6) + value_width : std::max(name_width, value_width);
     const double height = line + 0.8 * large.size;
     // The label's box touches the circle around the pointer from outside, and stays inside the picture.
@@ -139,8 +150,7 @@ void draw_scale_bar(Canvas& canvas, const MillShape& shape, double arrow_seconds
   const Camera& camera = canvas.layout.camera;
   const double length = round_number_below(0.45 * shape.radius);  // [m]
   const double width = length * camera.pixels_per_metre;
-  const double left = canvas.layout.picture.left + canvas.px(28);
-  const double baseline = canvas.layout.picture.bottom - canvas.px(30), tick = canvas.px(4);
+  const double left = corner_left(canvas), baseline = corner_bottom(canvas), tick = canvas.px(4);
   const double w = canvas.stroke(1.6);
   canvas.meshes.line({left, baseline}, {left + width, baseline}, w, canvas.theme.quiet);
   canvas.meshes.line({left, baseline - tick}, {left, baseline + tick}, w, canvas.theme.quiet);
@@ -158,9 +168,9 @@ void draw_scale_bar(Canvas& canvas, const MillShape& shape, double arrow_seconds
 
 void draw_key(Canvas& canvas, const Overlay& overlay, double widest_chain) {
   const TextStyle style{canvas.letter(12), canvas.theme.quiet};
-  const double left = canvas.layout.picture.left + canvas.px(28), line = std::max(canvas.px(19), 1.35 * style.size);
+  const double left = corner_left(canvas), line = std::max(canvas.px(19), 1.35 * style.size);
   const double sample = canvas.px(24);
-  double baseline = canvas.layout.picture.top + canvas.px(34);
+  double baseline = corner_top(canvas);
   const auto row = [&](Rgba colour, double width, const std::string& words) {
     const double y = std::round(baseline - 0.36 * style.size);
     canvas.meshes.line({left, y}, {left + sample, y}, width, colour);

@@ -14,7 +14,7 @@ namespace tumble::render {
 namespace {
 
 constexpr int kStreamlines = 8;
-constexpr double kLeastLine = 0.4;    // length of a line that is drawn, in shell radii: shorter ones are noise
+constexpr double kLeastLine = 0.4;     // length of a line that is drawn, in shell radii: shorter ones are noise
 constexpr int kArrowEvery = 2;         // cells
 constexpr double kLeastCovered = 0.1;  // occupancy from which a cell's mean velocity gets an arrow
 

@@ -62,7 +62,7 @@ void value_and_unit(Canvas& canvas, double x, double y, const std::string& value
 }
 
 void label_and_remark(Canvas& canvas, double x, double y, const std::string& label, const std::string& remark) {
-  canvas.text.add(label, x, y, quiet(canvas, 12.5));
+  if (has_room(canvas, 28)) canvas.text.add(label, x, y, quiet(canvas, 12.5));
   if (has_room(canvas, 19)) canvas.text.add(remark, x, y + canvas.px(47), quiet(canvas, 12.5));
 }
 
@@ -180,7 +180,7 @@ void draw_still_panel(Canvas& canvas, const Panel& panel, bool pale) {
   auto& text = canvas.text;
   text.add(mill_in_words(panel.setup.config), plan.left, plan.y(18),
            {canvas.letter(21), canvas.theme.text, Weight::kBold});
-  text.add(charge_in_words(panel.setup), plan.left, plan.y(42), quiet(canvas, 13));
+  if (has_room(canvas, 24)) text.add(charge_in_words(panel.setup), plan.left, plan.y(42), quiet(canvas, 13));
   rule(canvas, plan.y(62));
   text.add(time_note(panel.slow), plan.right, plan.y(116), quiet(canvas, 13, Align::kRight));
 

@@ -31,6 +31,11 @@ done_by render run.h5 -o pictures --size 320x180 --force
 done_by render run.h5 -o filmed/ --size 320x180 --theme film --look-seed 3 --threads 1
 done_by render run.h5 -o filmed_again/ --size 320x180 --theme film --look-seed 3 --threads 2
 cmp filmed/frame_000001.png filmed_again/frame_000001.png || fail "a filmed picture depends on the number of threads"
+looks=(--size 320x180 --theme light --colour force --overlay all)
+done_by render run.h5 -o looks/ "${looks[@]}" --threads 1
+done_by render run.h5 -o looks_again/ "${looks[@]}" --threads 2
+cmp looks/frame_000009.png looks_again/frame_000009.png || fail "a picture with all overlays depends on the number of threads"
+refused 'streamlines' render run.h5 -o film.mp4 --overlay toes # names what there is
 refused 'size' render run.h5 -o film.mp4 --size 4294968576x720 # 2^32 + 1280
 
 for key in torque_N_m torque_closure_N_m; do
