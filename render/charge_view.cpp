@@ -79,14 +79,18 @@ void draw_trails(Canvas& canvas, const ChargeView& charge, std::span<const Frame
   }
 }
 
-double chain_width(const Canvas& canvas, double share) { return canvas.px(7.5) * std::clamp(share, 0.0, 1.0); }
+ChainScale chain_scale(const Canvas& canvas, const Balls& balls, double widest_force) {
+  double width = canvas.px(7.5);  // but chains of small balls stay apart
+  for (const double r : balls.radius) width = std::min(width, 0.8 * r * canvas.layout.camera.pixels_per_metre);
+  return {widest_force, std::max(width, 1.5)};
+}
 
-void draw_chains(Canvas& canvas, const Frame& frame, std::span<const ContactForce> contacts, double high) {
+void draw_chains(Canvas& canvas, const Frame& frame, std::span<const ContactForce> contacts, const ChainScale& scale) {
   constexpr double kThinnest = 0.35;  // weaker contacts are not seen [px]
   const Camera& camera = canvas.layout.camera;
   std::vector<const ContactForce*> order;
   for (const ContactForce& c : contacts)
-    if (chain_width(canvas, c.normal / high) > kThinnest) order.push_back(&c);
+    if (scale.width * scale.share_of(c.normal) > kThinnest) order.push_back(&c);
   // What presses most lies on top.
   std::stable_sort(order.begin(), order.end(), [](const auto* a, const auto* b) { return a->normal < b->normal; });
   const auto place = [&](int ball) {
@@ -95,7 +99,7 @@ void draw_chains(Canvas& canvas, const Frame& frame, std::span<const ContactForc
   };
   for (const bool halo : {true, false}) {
     for (const ContactForce* c : order) {
-      const double share = std::min(c->normal / high, 1.0), width = chain_width(canvas, share);
+      const double share = scale.share_of(c->normal), width = share * scale.width;
       const Vec2 from = place(c->i), to = c->j >= 0 ? place(c->j) : camera.image_from_mill(c->x, c->y);
       const double grow = halo ? canvas.stroke(1.0) : 0;
       const Rgba ink = halo ? with_alpha(canvas.theme.halo, 0.25 + 0.45 * share)

@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <span>
 
 #include "core/contact_force.h"
@@ -33,9 +34,15 @@ void draw_trails(Canvas& canvas, const ChargeView& charge, std::span<const Frame
 // One arrow a ball, `seconds` of its motion long.
 void draw_velocities(Canvas& canvas, const Balls& balls, const Frame& frame, double seconds);
 
-// Lines from ball to touching ball, and to the shell, as wide and as bright as the normal force; widest at `high` [N].
-void draw_chains(Canvas& canvas, const Frame& frame, std::span<const ContactForce> contacts, double high);
-double chain_width(const Canvas& canvas, double share);  // of that force [px]
+// How wide a force is drawn: in proportion, up to the widest.
+struct ChainScale {
+  double force = 1, width = 1;  // of the widest line [N], [px]
+  double share_of(double normal) const { return std::clamp(normal / force, 0.0, 1.0); }
+};
+ChainScale chain_scale(const Canvas& canvas, const Balls& balls, double widest_force);
+
+// Lines from ball to touching ball, and to the shell, as wide and as bright as the normal force.
+void draw_chains(Canvas& canvas, const Frame& frame, std::span<const ContactForce> contacts, const ChainScale& scale);
 
 // An arrow from `a` to `b`, outlined so that it reads on any ground; nothing where it would be a dot.
 void draw_arrow(Canvas& canvas, const Vec2& a, const Vec2& b, double width, Rgba colour);

@@ -166,7 +166,7 @@ void draw_scale_bar(Canvas& canvas, const MillShape& shape, double arrow_seconds
   canvas.text.add(fmt::format("{:g} m/s", speed), left + arrow / 2, above - canvas.px(9), label);
 }
 
-void draw_key(Canvas& canvas, const Overlay& overlay, double widest_chain) {
+void draw_key(Canvas& canvas, const Overlay& overlay, const ChainScale& chains) {
   const TextStyle style{canvas.letter(12), canvas.theme.quiet};
   const double left = corner_left(canvas), line = std::max(canvas.px(19), 1.35 * style.size);
   const double sample = canvas.px(24);
@@ -181,8 +181,8 @@ void draw_key(Canvas& canvas, const Overlay& overlay, double widest_chain) {
   if (overlay.streamlines) row(canvas.theme.flow, canvas.stroke(1.6), "mean flow");
   if (overlay.occupancy) row(canvas.theme.trace, canvas.stroke(1.8), "occupancy");
   if (overlay.chains) {
-    const double force = round_number_below(widest_chain);
-    row(canvas.theme.force, chain_width(canvas, force / widest_chain), fmt::format("force {:g} N", force));
+    const double force = round_number_below(chains.force);
+    row(canvas.theme.force, chains.width * chains.share_of(force), fmt::format("force {:g} N", force));
   }
 }
 

@@ -4,6 +4,7 @@
 
 #include "core/mill_shape.h"
 #include "render/canvas.h"
+#include "render/charge_view.h"
 #include "render/renderer.h"
 
 namespace tumble::render {
@@ -32,7 +33,7 @@ void draw_rotation(Canvas& canvas, const MillShape& shape, double speed);
 // is long) when those are drawn; NaN without them.
 void draw_scale_bar(Canvas& canvas, const MillShape& shape, double arrow_seconds);
 
-// In the upper left corner, what the lines over the charge stand for. `widest_chain`: the force drawn as that [N].
-void draw_key(Canvas& canvas, const Overlay& overlay, double widest_chain);
+// In the upper left corner, what the lines over the charge stand for.
+void draw_key(Canvas& canvas, const Overlay& overlay, const ChainScale& chains);
 
 }  // namespace tumble::render

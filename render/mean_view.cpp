@@ -66,18 +66,25 @@ void draw_heads(Canvas& canvas, std::span<const Vec2> points, Rgba colour) {
 
 void draw_occupancy(Canvas& canvas, const MeanView& mean) {
   const TextStyle style{canvas.letter(11.5), canvas.theme.trace, Weight::kBold, Align::kCentre};
+  std::vector<Vec2> labels;
   for (const auto& [level, lines] : mean.occupancy) {
-    const Contour* longest = nullptr;
+    std::vector<Vec2> longest;
     for (const Contour& line : lines) {
-      outlined(canvas, seen(canvas, line), canvas.stroke(1.0 + 1.6 * level), canvas.theme.trace);
-      if (!longest || line.points.size() > longest->points.size()) longest = &line;
+      const std::vector<Vec2> points = seen(canvas, line);
+      outlined(canvas, points, canvas.stroke(1.0 + 1.6 * level), canvas.theme.trace);
+      if (points.size() > longest.size()) longest = points;
     }
-    if (!longest) continue;
-    // The labels stand on the side of the line that looks to the axis, where balls are few.
-    const auto nearest = std::min_element(longest->points.begin(), longest->points.end(),
-                                          [](const auto& a, const auto& b) { return a.norm() < b.norm(); });
-    const Vec2 at = canvas.layout.camera.image_from_mill(nearest->x(), nearest->y());
-    add_on_charge(canvas, fmt::format("{:.0f} %", 100 * level), at.x(), at.y() + 0.36 * style.size, style);
+    // The labels stand where a line comes near the axis, for there balls are few, but not upon one another.
+    const Vec2 axis = canvas.layout.camera.image_from_mill(0, 0);
+    std::stable_sort(longest.begin(), longest.end(),
+                     [&](const Vec2& a, const Vec2& b) { return (a - axis).norm() < (b - axis).norm(); });
+    for (const Vec2& at : longest) {
+      if (std::any_of(labels.begin(), labels.end(), [&](const Vec2& l) { return (l - at).norm() < 3.6 * style.size; }))
+        continue;
+      add_on_charge(canvas, fmt::format("{:.0f} %", 100 * level), at.x(), at.y() + 0.36 * style.size, style);
+      labels.push_back(at);
+      break;
+    }
   }
 }
 
@@ -111,7 +118,8 @@ void draw_head(Canvas& canvas, const MillShape& shape, double head) {
   }
   const TextStyle style{canvas.letter(12.5), canvas.theme.second, Weight::kBold, Align::kCentre};
   const double x = middle.x() + (camera.mirror ? 0.45 : -0.45) * reach;
-  add_on_charge(canvas, fmt::format("head {:.0f} mm", 1000 * head), x, middle.y() + canvas.px(6) + style.size, style);
+  add_on_charge(canvas, fmt::format("head {}{:.0f} mm", head < 0 ? "−" : "", std::abs(1000 * head)), x,
+                middle.y() + canvas.px(6) + style.size, style);
 }
 
 void draw_centre(Canvas& canvas, double x, double y) {

@@ -115,7 +115,7 @@ void Renderer::Impl::paint_still(StillLayer& layer, bool pale) {
     draw_rotation(*canvas, shape, setup.mill_speed);
     const bool arrows = style.overlay.velocity || style.overlay.mean_velocity;
     draw_scale_bar(*canvas, shape, arrows ? arrow_seconds() : kNotGiven);
-    draw_key(*canvas, style.overlay, widest_chain);
+    draw_key(*canvas, style.overlay, chain_scale(*canvas, setup.balls, widest_chain));
     draw_still_panel(*canvas, panel(), pale);
   }
   flush();
@@ -195,7 +195,8 @@ const Image& Renderer::draw(const Frame& frame, const Moment& moment) {
     canvas.meshes.flush();
     draw_balls(canvas, charge);
     canvas.discs.flush();
-    if (overlay.chains) draw_chains(canvas, frame, moment.contacts, my.widest_chain);
+    if (overlay.chains)
+      draw_chains(canvas, frame, moment.contacts, chain_scale(canvas, my.setup.balls, my.widest_chain));
     draw_mean(canvas, my.shape, my.mean, overlay, my.arrow_seconds());
     if (overlay.velocity) draw_velocities(canvas, my.setup.balls, frame, my.arrow_seconds());
     my.draw_rim(moment);

@@ -6,18 +6,27 @@
 namespace tumble::render {
 namespace {
 
-// phi v in cell (i, j) of the field with its rim; 0 where nothing moves or nothing is known.
-double flow_in(const Field& field, const std::vector<double>& velocity, int i, int j) {
-  if (i < 1 || j < 1 || i > field.n || j > field.n) return 0;
+// The field in cell (i, j), counted with a rim of cells that lie in the shell.
+struct Flow {
+  double covered = 0, x = 0, y = 0;  // phi, phi v [m/s]; 0 where nothing moves or nothing is known
+};
+Flow flow_in(const Field& field, int i, int j) {
+  if (i < 1 || j < 1 || i > field.n || j > field.n) return {};
   const auto k = static_cast<std::size_t>(j - 1) * field.n + (i - 1);
-  const double flow = field.occupancy[k] * velocity[k];
-  return std::isnan(flow) ? 0 : flow;
+  const double phi = field.occupancy[k], x = phi * field.vx[k], y = phi * field.vy[k];
+  return std::isnan(x + y) ? Flow{} : Flow{phi, x, y};
+}
+
+// A flow is known to a share of what is there: where hardly anything is, nothing streams.
+double weight_of(const Flow& a, const Flow& b) {
+  constexpr double kFloor = 0.02;
+  return 1 / std::pow((a.covered + b.covered) / 2 + kFloor, 2);
 }
 
 }  // namespace
 
 Grid stream_function(const Field& field, double shell_radius) {
-  const int n = field.n + 2;  // a rim of cells that lie in the shell
+  const int n = field.n + 2;
   Grid psi{n, field.cell, std::vector<double>(static_cast<std::size_t>(n) * n, 0.0)};
   std::vector<int> unknown(psi.value.size(), -1);
   int count = 0;
@@ -30,26 +39,27 @@ Grid stream_function(const Field& field, double shell_radius) {
   // Between neighbours psi rises by the flow across the line that joins them: one equation for each such pair.
   std::vector<Eigen::Triplet<double>> entries;
   Eigen::VectorXd right = Eigen::VectorXd::Zero(count);
-  const auto join = [&](std::size_t a, std::size_t b, double rise) {
+  const auto join = [&](std::size_t a, std::size_t b, double rise, double weight) {
     const int p = unknown[a], q = unknown[b];
     if (p >= 0) {
-      entries.emplace_back(p, p, 1);
-      right[p] -= rise;
+      entries.emplace_back(p, p, weight);
+      right[p] -= weight * rise;
     }
     if (q >= 0) {
-      entries.emplace_back(q, q, 1);
-      right[q] += rise;
+      entries.emplace_back(q, q, weight);
+      right[q] += weight * rise;
     }
     if (p >= 0 && q >= 0) {
-      entries.emplace_back(p, q, -1);
-      entries.emplace_back(q, p, -1);
+      entries.emplace_back(p, q, -weight);
+      entries.emplace_back(q, p, -weight);
     }
   };
   const double half = field.cell / 2;
   for (int j = 0; j + 1 < n; ++j) {
     for (int i = 0; i + 1 < n; ++i) {
-      join(index(i, j), index(i + 1, j), -half * (flow_in(field, field.vy, i, j) + flow_in(field, field.vy, i + 1, j)));
-      join(index(i, j), index(i, j + 1), half * (flow_in(field, field.vx, i, j) + flow_in(field, field.vx, i, j + 1)));
+      const Flow here = flow_in(field, i, j), right_of = flow_in(field, i + 1, j), above = flow_in(field, i, j + 1);
+      join(index(i, j), index(i + 1, j), -half * (here.y + right_of.y), weight_of(here, right_of));
+      join(index(i, j), index(i, j + 1), half * (here.x + above.x), weight_of(here, above));
     }
   }
   Eigen::SparseMatrix<double> matrix(count, count);

@@ -8,10 +8,7 @@ namespace tumble::render {
 // the mean velocity; 0 at the shell. What streams through a cell is balls, and in a steady state none pile up anywhere:
 // so phi v, and not v, has no sources, its streamlines are closed, and between two contours of psi flows the difference
 // of their levels, as area of balls a second. The measured field has noise; psi is the one whose flow comes nearest to
-// it, by least squares (that part of its Helmholtz decomposition which has no sources).
-//
-// The lines run along v wherever psi follows the field; along the shell they run with it, as the balls in its pockets
-// do.
+// it by least squares, weighted by the flow's relative error: so no line strays through the empty part of the mill.
 Grid stream_function(const Field& field, double shell_radius);
 
 }  // namespace tumble::render

@@ -380,14 +380,21 @@ TEST(Renderer, KeepsLabelsApart) {
   Style style;
   style.overlay.impact = true;
   Renderer renderer(scene.setup, style);
+  const Image none = renderer.draw(scene.frame, {});
   ChargeMotion motion;
-  const auto label_area = [&](double impact) {
-    motion.impact_toe_deg.value = impact;
-    renderer.set_mean(motion);
-    const Image none = renderer.draw(scene.frame, {});
-    return changed(renderer.draw(scene.frame, {213, kNotGiven, {}, {}, {}}), none, 30).area;
+  motion.impact_toe_deg.value = 208;
+  renderer.set_mean(motion);
+  const Image impact = renderer.draw(scene.frame, {});
+  const auto covered_by_toe = [&](double toe_deg) {
+    const Image both = renderer.draw(scene.frame, {toe_deg, kNotGiven, {}, {}, {}});
+    EXPECT_GT(changed(both, impact, 30).area, 100);
+    int covered = 0;
+    for (int v = 0; v < none.height; ++v)
+      for (int u = 0; u < none.width; ++u)
+        covered += difference(impact, none, v, u) > 30 && difference(both, impact, v, u) > 30;
+    return covered;
   };
-  EXPECT_NEAR(label_area(212), label_area(300), 0.1 * label_area(300));
+  for (const double toe_deg : {204, 206, 210, 213}) EXPECT_EQ(covered_by_toe(toe_deg), 0) << toe_deg;
 }
 
 TEST(Renderer, RefusesPicturesThatNoFilmCanHold) {
