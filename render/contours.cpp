@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "core/lifter_section.h"
+
 namespace tumble::render {
 namespace {
 
@@ -82,7 +84,7 @@ std::vector<Contour> contours(const Grid& grid, double level) {
   return lines;
 }
 
-Contour rounded(const Contour& line) {
+Contour rounded(const Contour& line, double tolerance) {
   Contour result = line;
   if (line.points.size() < 3) return result;
   for (int round = 0; round < 2; ++round) {
@@ -96,6 +98,7 @@ Contour rounded(const Contour& line) {
     }
     if (!line.closed) result.points.push_back(p.back());
   }
+  result.points = thinned(result.points, tolerance);
   return result;
 }
 

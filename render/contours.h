@@ -25,8 +25,9 @@ struct Contour {
 // left of a line's direction. Lines end at the unknown.
 std::vector<Contour> contours(const Grid& grid, double level);
 
-// The corners cut off twice (Chaikin 1974): a line through cells looks like what it stands for.
-Contour rounded(const Contour& line);
+// The corners cut off twice (Chaikin 1974): a line through cells looks like what it stands for. Points that lie within
+// `tolerance` of the line without them are left out [m].
+Contour rounded(const Contour& line, double tolerance);
 
 // Mean of each known value and its eight neighbours, 1-2-1 in both directions.
 Grid smoothed(const Grid& grid);

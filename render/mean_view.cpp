@@ -15,6 +15,7 @@ namespace {
 
 constexpr int kStreamlines = 8;
 constexpr double kLeastLine = 0.4;     // length of a line that is drawn, in shell radii: shorter ones are noise
+constexpr double kSmooth = 0.15;       // by which a line may be off [px]
 constexpr int kArrowEvery = 2;         // cells
 constexpr double kLeastCovered = 0.1;  // occupancy from which a cell's mean velocity gets an arrow
 
@@ -24,10 +25,10 @@ double length_of(const Contour& line) {
   return sum;
 }
 
-std::vector<Contour> lines_at(const Grid& grid, double level, double least) {
+std::vector<Contour> lines_at(const Grid& grid, double level, double least, double pixel) {
   std::vector<Contour> lines;
   for (const Contour& line : contours(grid, level))
-    if (length_of(line) >= least) lines.push_back(rounded(line));
+    if (length_of(line) >= least) lines.push_back(rounded(line, kSmooth * pixel));
   return lines;
 }
 
@@ -137,7 +138,7 @@ void draw_centre(Canvas& canvas, double x, double y) {
 }
 
 // Where single balls lie in the lifters' pockets the surface leaps from one to the other: no line joins these.
-std::vector<Contour> surface_pieces(const ChargeMotion& motion) {
+std::vector<Contour> surface_pieces(const ChargeMotion& motion, double pixel) {
   const double leap = 0.12 * motion.mill_radius;
   std::vector<Contour> pieces(1);
   for (const SurfacePoint& p : motion.surface) {
@@ -147,30 +148,31 @@ std::vector<Contour> surface_pieces(const ChargeMotion& motion) {
     pieces.back().points.push_back(at);
   }
   std::erase_if(pieces, [](const Contour& piece) { return piece.points.size() < 3; });
-  for (Contour& piece : pieces) piece = rounded(piece);
+  for (Contour& piece : pieces) piece = rounded(piece, kSmooth * pixel);
   return pieces;
 }
 
 }  // namespace
 
-MeanView make_mean_view(const ChargeMotion& motion, const Overlay& wanted) {
+MeanView make_mean_view(const ChargeMotion& motion, const Overlay& wanted, double pixel) {
   MeanView view;
   const Field& field = motion.field;
   const double least = kLeastLine * motion.mill_radius;
   if (wanted.occupancy && field.n > 0) {
     const Grid grid = smoothed({field.n, field.cell, field.occupancy});
-    for (const double level : {0.2, 0.4, 0.6, 0.8}) view.occupancy.push_back({level, lines_at(grid, level, least)});
+    for (const double level : {0.2, 0.4, 0.6, 0.8})
+      view.occupancy.push_back({level, lines_at(grid, level, least, pixel)});
   }
   if (wanted.streamlines && field.n > 0) {
     const Grid psi = stream_function(field, motion.mill_radius);
     const auto [low, high] = std::minmax_element(psi.value.begin(), psi.value.end());
     const double peak = std::abs(*low) > std::abs(*high) ? *low : *high;  // > 0 where the charge turns with the mill
     for (int k = 0; k < kStreamlines; ++k) {
-      for (Contour& line : lines_at(psi, (k + 0.5) / kStreamlines * peak, least))
+      for (Contour& line : lines_at(psi, (k + 0.5) / kStreamlines * peak, least, pixel))
         view.streamlines.push_back(std::move(line));
     }
   }
-  if (wanted.surface) view.surface = surface_pieces(motion);
+  if (wanted.surface) view.surface = surface_pieces(motion, pixel);
   if (wanted.mean_velocity) view.field = field;
   view.head = motion.head.value;
   view.centre_x = motion.centre_of_circulation_x.value;

@@ -24,7 +24,8 @@ struct MeanView {
   double departure_deg = kNotGiven, impact_toe_deg = kNotGiven;
 };
 
-MeanView make_mean_view(const ChargeMotion& motion, const Overlay& wanted);
+// `pixel`: its size, which fixes how smooth lines need to be [m].
+MeanView make_mean_view(const ChargeMotion& motion, const Overlay& wanted, double pixel);
 
 // What lies over the charge: contours, streamlines, arrows (`arrow_seconds` of motion long), free surface, head and
 // centre of circulation.

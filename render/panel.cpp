@@ -199,9 +199,8 @@ void draw_still_panel(Canvas& canvas, const Panel& panel, bool pale) {
 
   if (panel.plot) {
     text.add("Torque of one slice, N m", plan.left, plan.y(240), {canvas.letter(13), canvas.theme.text});
-    if (!plan.is_small)
-      text.add("running mean over a lifter passage; time, s", plan.right, plan.y(240),
-               quiet(canvas, 11, Align::kRight));
+    text.add(plan.is_small ? "time, s" : "running mean over a lifter passage; time, s", plan.right, plan.y(240),
+             quiet(canvas, 11, Align::kRight));
     draw_torque_curve(canvas, *panel.plot, panel.trace, pale);
   }
 

@@ -168,7 +168,9 @@ void Renderer::set_scale(double low, double high) {
   impl_->is_painted = false;
 }
 
-void Renderer::set_mean(const ChargeMotion& motion) { impl_->mean = make_mean_view(motion, impl_->style.overlay); }
+void Renderer::set_mean(const ChargeMotion& motion) {
+  impl_->mean = make_mean_view(motion, impl_->style.overlay, 1 / impl_->canvas->layout.camera.pixels_per_metre);
+}
 
 void Renderer::set_force_scale(double high) {
   impl_->widest_chain = high;
