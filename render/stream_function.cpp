@@ -1,7 +1,10 @@
 #include "render/stream_function.h"
 
 #include <Eigen/SparseCholesky>
+#include <algorithm>
 #include <cmath>
+#include <tuple>
+#include <vector>
 
 namespace tumble::render {
 namespace {
@@ -23,6 +26,12 @@ double weight_of(const Flow& a, const Flow& b) {
   return 1 / std::pow((a.covered + b.covered) / 2 + kFloor, 2);
 }
 
+// How far it is from a place inside the shell to the shell along a grid line, in cells; less than that is not resolved.
+double cells_to_shell(double along, double across, double shell_radius, double cell) {
+  const double reach = std::sqrt(std::max(0.0, shell_radius * shell_radius - across * across));
+  return std::clamp((reach - std::abs(along)) / cell, 0.2, 1.0);
+}
+
 }  // namespace
 
 Grid stream_function(const Field& field, double shell_radius) {
@@ -36,30 +45,43 @@ Grid stream_function(const Field& field, double shell_radius) {
       if (std::hypot(psi.place(i), psi.place(j)) < shell_radius) unknown[index(i, j)] = count++;
   if (count == 0) return psi;
 
-  // Between neighbours psi rises by the flow across the line that joins them: one equation for each such pair.
+  // From a place to its neighbour psi rises by the flow across the line that joins them: one equation for each such
+  // line. Where it meets the shell it ends there, at psi = 0.
   std::vector<Eigen::Triplet<double>> entries;
   Eigen::VectorXd right = Eigen::VectorXd::Zero(count);
-  const auto join = [&](std::size_t a, std::size_t b, double rise, double weight) {
-    const int p = unknown[a], q = unknown[b];
-    if (p >= 0) {
-      entries.emplace_back(p, p, weight);
-      right[p] -= weight * rise;
-    }
-    if (q >= 0) {
-      entries.emplace_back(q, q, weight);
-      right[q] += weight * rise;
-    }
-    if (p >= 0 && q >= 0) {
-      entries.emplace_back(p, q, -weight);
-      entries.emplace_back(q, p, -weight);
+  const auto join = [&](int p, int q, double rise, double weight) {
+    for (const auto& [own, other, sign] : {std::tuple(p, q, -1.0), std::tuple(q, p, 1.0)}) {
+      if (own < 0) continue;
+      entries.emplace_back(own, own, weight);
+      if (other >= 0) entries.emplace_back(own, other, -weight);
+      right[own] += sign * weight * rise;
     }
   };
-  const double half = field.cell / 2;
+  struct Rim {
+    std::size_t inside, outside;
+    double cells;  // from the place inside to the shell
+  };
+  std::vector<Rim> rim;
   for (int j = 0; j + 1 < n; ++j) {
     for (int i = 0; i + 1 < n; ++i) {
-      const Flow here = flow_in(field, i, j), right_of = flow_in(field, i + 1, j), above = flow_in(field, i, j + 1);
-      join(index(i, j), index(i + 1, j), -half * (here.y + right_of.y), weight_of(here, right_of));
-      join(index(i, j), index(i, j + 1), half * (here.x + above.x), weight_of(here, above));
+      for (const bool upwards : {false, true}) {
+        const int k = i + !upwards, l = j + upwards;
+        const std::size_t a = index(i, j), b = index(k, l);
+        const int p = unknown[a], q = unknown[b];
+        const Flow here = flow_in(field, i, j), there = flow_in(field, k, l);
+        const auto across = [&](const Flow& flow) { return (upwards ? flow.x : -flow.y) * field.cell; };
+        if (p >= 0 && q >= 0) {
+          join(p, q, (across(here) + across(there)) / 2, weight_of(here, there));
+        } else if (p >= 0 || q >= 0) {
+          const bool leaves = p >= 0;
+          const double x = psi.place(leaves ? i : k), y = psi.place(leaves ? j : l);
+          const double cells =
+              upwards ? cells_to_shell(y, x, shell_radius, field.cell) : cells_to_shell(x, y, shell_radius, field.cell);
+          const Flow& inside = leaves ? here : there;
+          join(p, q, cells * across(inside), weight_of(inside, inside) / cells);
+          rim.push_back({leaves ? a : b, leaves ? b : a, cells});
+        }
+      }
     }
   }
   Eigen::SparseMatrix<double> matrix(count, count);
@@ -67,6 +89,12 @@ Grid stream_function(const Field& field, double shell_radius) {
   const Eigen::VectorXd solved = Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>(matrix).solve(right);
   for (std::size_t k = 0; k < unknown.size(); ++k)
     if (unknown[k] >= 0) psi.value[k] = solved[unknown[k]];
+  // Just outside, psi goes on as a straight line would through 0 at the shell: so lines between stay inside.
+  std::vector<int> neighbours(psi.value.size(), 0);
+  for (const Rim& r : rim) {
+    const double beyond = psi.value[r.inside] * (1 - 1 / r.cells);
+    psi.value[r.outside] += (beyond - psi.value[r.outside]) / ++neighbours[r.outside];
+  }
   return psi;
 }
 

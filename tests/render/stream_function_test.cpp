@@ -15,15 +15,15 @@ constexpr double kShell = 0.3, kTurning = 0.18, kOmega = 4, kCovered = 0.7;
 const Point kCentre{0.05, -0.08};
 
 // A disc of charge that turns like one body about a centre of its own; nothing elsewhere.
-Field vortex(double noise = 0) {
+Field vortex(double noise = 0, const Point& centre = kCentre, double turning = kTurning) {
   Random random(3);
   Field f;
   f.n = 40;
   f.cell = 2 * kShell / f.n;
   for (int j = 0; j < f.n; ++j) {
     for (int i = 0; i < f.n; ++i) {
-      const Point r((i - 19.5) * f.cell - kCentre.x(), (j - 19.5) * f.cell - kCentre.y());
-      const bool inside = r.norm() < kTurning;
+      const Point r((i - 19.5) * f.cell - centre.x(), (j - 19.5) * f.cell - centre.y());
+      const bool inside = r.norm() < turning;
       f.occupancy.push_back(inside ? kCovered : 0);
       f.vx.push_back(inside ? -kOmega * r.y() + noise * random.uniform(-1, 1) : NAN);
       f.vy.push_back(inside ? kOmega * r.x() + noise * random.uniform(-1, 1) : NAN);
@@ -55,6 +55,18 @@ TEST(StreamFunction, OfARigidVortexHasCirclesForLines) {
     const double radius = kTurning * std::sqrt(1 - share);
     // Half a cell: the disc's own edge is a staircase of cells.
     for (const Point& p : rounded(lines[0], 1e-4).points) EXPECT_NEAR((p - kCentre).norm(), radius, 0.5 * psi.cell);
+  }
+}
+
+// A charge that fills the mill and turns with it: the shell itself is a line, though it cuts through the cells.
+TEST(StreamFunction, HasTheShellForALine) {
+  const Grid psi = stream_function(vortex(0, {0, 0}, kShell), kShell);
+  const double peak = kCovered * kOmega * kShell * kShell / 2;
+  for (const double share : {0.01, 0.06, 0.3}) {
+    const auto lines = contours(psi, share * peak);
+    ASSERT_EQ(lines.size(), 1u);
+    for (const Point& p : lines[0].points)
+      EXPECT_NEAR(p.norm(), kShell * std::sqrt(1 - share), 0.1 * psi.cell) << share;
   }
 }
 
