@@ -21,10 +21,23 @@
 namespace tumble::cli {
 namespace {
 
-const std::map<std::string, render::Colour> kColours = {{"speed", render::Colour::kSpeed},
-                                                        {"size", render::Colour::kSize},
-                                                        {"spin", render::Colour::kSpin},
-                                                        {"steel", render::Colour::kSteel}};
+const std::map<std::string, render::Colour> kColours = {
+    {"speed", render::Colour::kSpeed}, {"size", render::Colour::kSize},           {"spin", render::Colour::kSpin},
+    {"steel", render::Colour::kSteel}, {"residence", render::Colour::kResidence}, {"force", render::Colour::kForce}};
+
+const std::map<std::string, bool render::Overlay::*> kOverlays = {{"toe", &render::Overlay::toe},
+                                                                  {"shoulder", &render::Overlay::shoulder},
+                                                                  {"tracks", &render::Overlay::tracks},
+                                                                  {"velocity", &render::Overlay::velocity},
+                                                                  {"chains", &render::Overlay::chains},
+                                                                  {"occupancy", &render::Overlay::occupancy},
+                                                                  {"streamlines", &render::Overlay::streamlines},
+                                                                  {"mean_velocity", &render::Overlay::mean_velocity},
+                                                                  {"surface", &render::Overlay::surface},
+                                                                  {"head", &render::Overlay::head},
+                                                                  {"circulation", &render::Overlay::circulation},
+                                                                  {"departure", &render::Overlay::departure},
+                                                                  {"impact", &render::Overlay::impact}};
 
 struct Options : CommonOptions {
   std::vector<fs::path> runs;
@@ -32,7 +45,7 @@ struct Options : CommonOptions {
   std::string camera = "lab";
   std::optional<std::string> size, preset;
   std::optional<double> fps, crf, zoom, slow, at, from, seconds, every;
-  std::string overlay = "toe,shoulder", colour = "speed", theme = "default";
+  std::string overlay = "toe,shoulder", colour = "speed", theme = "dark";
   std::uint64_t look_seed = 1;
   std::string context = "osmesa";
   FilmPlan plan;
@@ -43,25 +56,28 @@ const std::map<std::string, render::ContextKind> kContexts = {{"osmesa", render:
 
 render::Overlay parse_overlay(const std::string& list) {
   render::Overlay overlay;
-  overlay.toe = overlay.shoulder = overlay.tracks = overlay.velocity = false;
+  const auto set_all = [&](bool shown) {
+    for (const auto& [name, member] : kOverlays) overlay.*member = shown;
+  };
+  set_all(false);
   std::istringstream words(list);
   for (std::string word; std::getline(words, word, ',');) {
-    if (word == "toe")
-      overlay.toe = true;
-    else if (word == "shoulder")
-      overlay.shoulder = true;
-    else if (word == "tracks")
-      overlay.tracks = true;
-    else if (word == "velocity")
-      overlay.velocity = true;
-    else if (word != "none" && !word.empty())
-      throw InputError("--overlay", "\"" + word + "\" is unknown; give any of toe,shoulder,tracks,velocity or none");
+    if (const auto found = kOverlays.find(word); found != kOverlays.end()) {
+      overlay.*found->second = true;
+    } else if (word == "all") {
+      set_all(true);
+    } else if (word != "none" && !word.empty()) {
+      std::string known;
+      for (const auto& [name, member] : kOverlays) known += (known.empty() ? "" : ",") + name;
+      throw InputError("--overlay", "\"" + word + "\" is unknown; give any of " + known + ", or all, or none");
+    }
   }
   return overlay;
 }
 
-enum class Theme { kDefault, kFilm };
-const std::map<std::string, Theme> kThemes = {{"default", Theme::kDefault}, {"film", Theme::kFilm}};
+enum class Theme { kDark, kLight, kFilm };
+const std::map<std::string, Theme> kThemes = {
+    {"dark", Theme::kDark}, {"default", Theme::kDark}, {"light", Theme::kLight}, {"film", Theme::kFilm}};
 
 render::View parse_view(const std::string& camera, const std::optional<double>& zoom) {
   using From = render::View::From;
@@ -125,10 +141,13 @@ void read_times(Options& o) {
 }
 
 std::size_t render_runs(const std::vector<io::RunReader>& runs, const Options& o) {
+  const render::Style& style = o.plan.style;
   std::vector<ChargeMotion> truths;
   for (std::size_t i = 0; i < runs.size(); ++i) {
     truths.emplace_back();
-    if (o.plan.style.overlay.toe || o.plan.style.overlay.shoulder)
+    if (render::shows_mean(style.overlay) || render::shows_residence(style))
+      truths.back() = measure_run(runs[i], o);
+    else if (style.overlay.toe || style.overlay.shoulder)
       truths.back().profile = measure_run_edges(runs[i], o);
     truths.back().origin = o.runs[i].string();
   }
@@ -145,7 +164,9 @@ std::size_t render_runs(const std::vector<io::RunReader>& runs, const Options& o
 
 void render(Options o) {
   limit_threads(o.threads);
-  const bool filmed = parse_name(o.theme, "--theme", kThemes) == Theme::kFilm;
+  const Theme theme = parse_name(o.theme, "--theme", kThemes);
+  const bool filmed = theme == Theme::kFilm;
+  o.plan.style.theme = theme == Theme::kLight ? render::ThemeName::kLight : render::ThemeName::kDark;
   const OutputKind kind = output_kind(o.output);
   refuse_odd(o, kind);
   if (kind == OutputKind::kFilm) o.plan.format = io::usual_format(o.output.string());
@@ -219,11 +240,16 @@ void add_render(CLI::App& app) {
   verb->add_option("--zoom", o->zoom, "How many times closer [1; 2 with ball:N]");
   verb->add_option("--context", o->context, "What draws: osmesa, or egl (a graphics card where there is one)")
       ->capture_default_str();
-  verb->add_option("--colour", o->colour, "Colour of the balls: speed, size, spin or steel")->capture_default_str();
-  verb->add_option("--overlay", o->overlay, "Any of toe,shoulder,tracks,velocity, or none")->capture_default_str();
+  verb->add_option("--colour", o->colour, "Colour of the balls: speed, size, spin, steel, residence or force")
+      ->capture_default_str();
+  verb->add_option("--overlay", o->overlay,
+                   "Any of toe,shoulder,tracks,velocity,chains (contact forces) and, of the run's mean, occupancy,"
+                   "streamlines,mean_velocity,surface,head,circulation,departure,impact; or all, or none")
+      ->capture_default_str();
   verb->add_flag("--mirror", o->plan.style.mirror, "See the mill from its other end: it turns clockwise");
-  verb->add_option("--theme", o->theme,
-                   "default, or film: as a laboratory's camera sees the mill, without marks, colours and text")
+  verb->add_option(
+          "--theme", o->theme,
+          "dark, light (for paper), or film: as a laboratory's camera sees the mill, without marks, colours and text")
       ->capture_default_str();
   verb->add_option("--look-seed", o->look_seed, "Which light and materials the film theme takes")
       ->capture_default_str();

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "cli/ball_insight.h"
 #include "cli/picture_output.h"
 #include "cli/run_player.h"
 #include "core/error.h"
@@ -28,9 +29,32 @@ struct Range {
   double low = 0, high = 0;
 };
 
+BallInsight insight_of(const Shot& shot, const render::Style& style) {
+  return {*shot.run, shot.truth ? *shot.truth : ChargeMotion{}, style};
+}
+
+// Where the scales of all runs end: what is drawn of any of them.
+struct Tops {
+  double residence = 0, force = 0;  // 0 where nothing shows it
+};
+
+Tops tops_of(const std::vector<Shot>& shots, const render::Style& style) {
+  Tops tops;
+  const bool shows_forces = render::shows_forces(style), shows_residence = render::shows_residence(style);
+  if (!shows_forces && !shows_residence) return tops;
+  for (const Shot& shot : shots) {
+    BallInsight insight = insight_of(shot, style);
+    if (shows_residence) tops.residence = std::max(tops.residence, insight.residence_top());
+    if (shows_forces) tops.force = std::max(tops.force, insight.force_top());
+  }
+  return tops;
+}
+
 // The colour scale of all runs: up to what one ball in a hundred exceeds, so that a single impact does not darken the
 // film.
-Range scale_of(const std::vector<Shot>& shots, render::Colour colour) {
+Range scale_of(const std::vector<Shot>& shots, render::Colour colour, const Tops& tops) {
+  if (colour == render::Colour::kResidence) return {0, tops.residence};
+  if (colour == render::Colour::kForce) return {0, tops.force};
   std::vector<double> values;
   for (const Shot& shot : shots) {
     const io::RunReader& run = *shot.run;
@@ -83,21 +107,38 @@ render::Moment moment_of(const Shot& shot, const Frame& frame) {
   return moment;
 }
 
-// Runs played in step.
+// Runs played in step, and what their frames do not hold.
 class Players {
  public:
-  explicit Players(const std::vector<Shot>& shots) : shots_(shots) {
-    for (const Shot& shot : shots) players_.emplace_back(*shot.run);
+  Players(const std::vector<Shot>& shots, const render::Style& style) : shots_(shots), seen_(shots.size()) {
+    for (const Shot& shot : shots) {
+      players_.emplace_back(*shot.run);
+      insights_.push_back(insight_of(shot, style));
+    }
   }
   std::vector<Frame> at(double time) {  // after their beginnings
     std::vector<Frame> frames;
     for (std::size_t c = 0; c < shots_.size(); ++c) frames.push_back(players_[c].at(shots_[c].begin + time));
     return frames;
   }
+  // What goes with the frames; valid until the next call.
+  std::vector<render::Moment> moments(const std::vector<Frame>& frames, const std::vector<std::vector<Frame>>& past) {
+    std::vector<render::Moment> moments;
+    for (std::size_t c = 0; c < shots_.size(); ++c) {
+      seen_[c] = insights_[c].at(frames[c].time);
+      moments.push_back(moment_of(shots_[c], frames[c]));
+      moments.back().past = past[c];
+      moments.back().contacts = seen_[c].contacts;
+      moments.back().of_ball = seen_[c].of_ball;
+    }
+    return moments;
+  }
 
  private:
   const std::vector<Shot>& shots_;
   std::vector<RunPlayer> players_;
+  std::vector<BallInsight> insights_;
+  std::vector<BallInsight::Moment> seen_;
 };
 
 void check_view(const std::vector<Shot>& shots, const render::View& view) {
@@ -127,16 +168,17 @@ std::size_t render_shots(const std::vector<Shot>& shots, const FilmPlan& plan, c
   check_view(shots, plan.style.view);
   const Timeline timeline = timeline_of(shots, plan);
   const std::size_t count = timeline.count;
-  const Range scale = scale_of(shots, plan.style.colour);
+  const Tops tops = tops_of(shots, plan.style);
+  const Range scale = scale_of(shots, plan.style.colour, tops);
   std::vector<render::SheetMill> mills;
   for (const Shot& shot : shots) mills.push_back({shot.run->setup(), shot.label});
-  const auto moments_of = [&](const std::vector<Frame>& frames, const std::vector<std::vector<Frame>>& past) {
-    std::vector<render::Moment> moments;
-    for (std::size_t c = 0; c < shots.size(); ++c) {
-      moments.push_back(moment_of(shots[c], frames[c]));
-      moments.back().past = past[c];
-    }
-    return moments;
+  const auto make_sheet = [&] {
+    auto sheet = std::make_unique<render::Sheet>(mills, plan.style);
+    sheet->set_scale(scale.low, scale.high);
+    if (tops.force > 0) sheet->set_force_scale(tops.force);
+    for (std::size_t c = 0; c < shots.size(); ++c)
+      if (shots[c].truth && render::shows_mean(plan.style.overlay)) sheet->set_mean(c, *shots[c].truth);
+    return sheet;
   };
 
   // Trails show a fixed stretch of true time: so many pictures before each. A still takes them as a film would.
@@ -157,12 +199,11 @@ std::size_t render_shots(const std::vector<Shot>& shots, const FilmPlan& plan, c
   };
 
   if (output_kind(output) == OutputKind::kDrawing) {
-    render::Sheet sheet(mills, plan.style);
-    sheet.set_scale(scale.low, scale.high);
-    Players players(shots);
-    const std::vector<std::vector<Frame>> past = frames_before(players, 0, trail_of(sheet));
+    const auto sheet = make_sheet();
+    Players players(shots, plan.style);
+    const std::vector<std::vector<Frame>> past = frames_before(players, 0, trail_of(*sheet));
     const std::vector<Frame> frames = players.at(timeline.first);
-    const Drawing drawing = sheet.sketch(frames, moments_of(frames, past), timeline.first);
+    const Drawing drawing = sheet->sketch(frames, players.moments(frames, past), timeline.first);
     output.extension() == ".svg" ? io::write_svg(output, drawing) : io::write_pdf(output, drawing);
     return 1;
   }
@@ -200,10 +241,9 @@ std::size_t render_shots(const std::vector<Shot>& shots, const FilmPlan& plan, c
   };
 
   const auto draw_parts = [&] {
-    render::Sheet sheet(mills, plan.style);
-    sheet.set_scale(scale.low, scale.high);
-    Players players(shots);
-    const std::size_t trail = trail_of(sheet);
+    const auto sheet = make_sheet();
+    Players players(shots, plan.style);
+    const std::size_t trail = trail_of(*sheet);
     for (std::size_t first = take(); first < count; first = take()) {
       std::vector<std::vector<Frame>> past = frames_before(players, first, trail);
       std::optional<io::FilmPart> part;
@@ -211,7 +251,7 @@ std::size_t render_shots(const std::vector<Shot>& shots, const FilmPlan& plan, c
       for (std::size_t i = first; i < std::min(count, first + length); ++i) {
         if (!tell()) return;
         std::vector<Frame> frames = players.at(timeline.at(i));
-        const Image& image = sheet.draw(frames, moments_of(frames, past), timeline.at(i));
+        const Image& image = sheet->draw(frames, players.moments(frames, past), timeline.at(i));
         if (part)
           part->write(image);
         else

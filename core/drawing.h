@@ -45,6 +45,8 @@ struct Drawing {
     bool is_bold = false;
     double anchor = 0;  // share of its width that lies to the left of `at`: 0, 0.5 or 1
     Rgba colour;
+    Rgba halo{0, 0, 0, 0};  // an outline behind the letters, so that they read on anything
+    double halo_width = 0;
   };
   struct Enter {  // until its Leave, shapes are moved and only show within a box (of the outer coordinates)
     Point offset{0, 0};

@@ -95,7 +95,17 @@ struct Painter {
     cairo_set_font_size(pen, s.size);
     cairo_text_extents_t extents;
     cairo_text_extents(pen, s.text.c_str(), &extents);
-    cairo_move_to(pen, s.at.x() - s.anchor * extents.x_advance, s.at.y());
+    const double left = s.at.x() - s.anchor * extents.x_advance;
+    if (s.halo_width > 0) {
+      cairo_move_to(pen, left, s.at.y());
+      cairo_text_path(pen, s.text.c_str());
+      cairo_set_line_join(pen, CAIRO_LINE_JOIN_ROUND);
+      cairo_set_line_width(pen, 2 * s.halo_width);
+      colour(s.halo);
+      cairo_stroke(pen);
+      cairo_set_line_join(pen, CAIRO_LINE_JOIN_MITER);
+    }
+    cairo_move_to(pen, left, s.at.y());
     colour(s.colour);
     cairo_show_text(pen, s.text.c_str());
     cairo_new_path(pen);

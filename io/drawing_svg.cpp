@@ -100,9 +100,13 @@ class Writer {
   }
   void operator()(const Drawing::Label& s) {
     const char* anchor = s.anchor == 0 ? "" : s.anchor == 1 ? " text-anchor=\"end\"" : " text-anchor=\"middle\"";
-    text += fmt::format("<text x=\"{}\" y=\"{}\" font-size=\"{}\"{}{}{}>{}</text>\n", number(s.at.x()),
+    const std::string halo =
+        s.halo_width > 0 ? fmt::format("{} stroke-width=\"{}\" stroke-linejoin=\"round\" paint-order=\"stroke\"",
+                                       painted("stroke", s.halo), number(2 * s.halo_width))
+                         : "";
+    text += fmt::format("<text x=\"{}\" y=\"{}\" font-size=\"{}\"{}{}{}{}>{}</text>\n", number(s.at.x()),
                         number(s.at.y()), number(s.size), s.is_bold ? " font-weight=\"bold\"" : "", anchor,
-                        painted("fill", s.colour), report::escaped(s.text));
+                        painted("fill", s.colour), halo, report::escaped(s.text));
   }
   void operator()(const Drawing::Enter& s) {
     ++boxes_;

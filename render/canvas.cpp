@@ -6,7 +6,7 @@ namespace tumble::render {
 
 void Canvas::paint_ground() {
   const auto share = [](std::uint8_t channel) { return static_cast<float>(channel) / 255.0f; };
-  glClearColor(share(ink::kGround.r), share(ink::kGround.g), share(ink::kGround.b), 1.0f);
+  glClearColor(share(theme.ground.r), share(theme.ground.g), share(theme.ground.b), 1.0f);
   glClear(GL_COLOR_BUFFER_BIT);
 }
 

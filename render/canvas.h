@@ -5,14 +5,15 @@
 #include "render/discs.h"
 #include "render/meshes.h"
 #include "render/text.h"
+#include "render/theme.h"
 
 namespace tumble::render {
 
 // All that a part of the picture needs to draw itself: the primitives and the plan. Parts add; the renderer decides
 // when each kind is flushed, and so what lies above what.
 struct Canvas {
-  Canvas(int width, int height, const Layout& plan)
-      : layout(plan), meshes(width, height), discs(width, height), text(width, height), height_(height) {
+  Canvas(int width, int height, const Layout& plan, const Theme& inks)
+      : layout(plan), theme(inks), meshes(width, height), discs(width, height), text(width, height), height_(height) {
     glViewport(0, 0, width, height);
     glEnable(GL_BLEND);
     glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);  // colours are premultiplied
@@ -37,6 +38,7 @@ struct Canvas {
   double letter(double units) const { return std::max(units * layout.unit, 9.0); }
 
   Layout layout;
+  const Theme& theme;
   Meshes meshes;
   Discs discs;
   Text text;

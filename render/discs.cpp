@@ -44,13 +44,16 @@ void main() {
   float mark = clamp(inside / soft + 0.5, 0.0, 1.0) * disc_look.z;
   float halo = clamp((inside + 0.05) / soft + 0.5, 0.0, 1.0) * disc_look.z;  // lets it read on pale balls too
 
-  // Steel mirrors its surroundings: a bright sky above, a dark floor below, a sharper light.
+  // Steel mirrors its surroundings: a bright sky above, a dark floor below with a darker line where they meet, a
+  // sharper light, and at grazing angles more of it all.
   float gloss = disc_look.w;
   float h = max(2.0 * z * dot(n, light) - light.z, 0.0);  // light direction . reflected view
   float spark = h * h; spark *= spark; spark *= spark; spark *= spark;
-  float sky = 0.5 + 0.5 * n.y * z * 2.0;
+  float up = 2.0 * n.y * z;  // of the mirrored direction
+  float grazing = 1.0 - z; grazing *= grazing;
+  float seen = 0.98 + 0.36 * up - 0.34 / (1.0 + 14.0 * up * up) + (0.55 + 0.45 * up) * grazing;
   vec3 base = disc_colour.rgb;
-  vec3 body = base * (0.30 + 0.78 * lit) * mix(1.0, 0.62 + 0.62 * sky, gloss);
+  vec3 body = base * (0.30 + 0.78 * lit) * mix(1.0, seen, gloss);
   body = mix(body, base * 0.25, 0.75 * halo);
   body = mix(body, vec3(0.97) * (0.40 + 0.65 * lit), mark);
   body += vec3(1.0, 0.98, 0.94) * spark * mix(0.22, 0.60, gloss);

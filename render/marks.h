@@ -1,12 +1,30 @@
 #pragma once
+#include <span>
+#include <string_view>
+
 #include "core/mill_shape.h"
 #include "render/canvas.h"
+#include "render/charge_view.h"
+#include "render/renderer.h"
 
 namespace tumble::render {
 
-// Toe and shoulder outside the rim, as the literature draws them: a pointer and its angle each, and an arc over the
-// charge between them. Nothing is drawn over the charge. Angles in degrees, NaN = no mark.
-void draw_toe_and_shoulder(Canvas& canvas, const MillShape& shape, double toe_deg, double shoulder_deg);
+// A place on the shell's circle that has a name.
+struct RimMark {
+  const char* name = "";
+  double angle_deg = kNotGiven;  // NaN = no mark
+  Rgba colour;
+};
+
+// Outside the rim, as the literature draws them: a pointer each, with its name and angle. Labels that would cover one
+// another make way along the rim, later ones for earlier ones. Nothing is drawn over the charge.
+void draw_rim_marks(Canvas& canvas, const MillShape& shape, std::span<const RimMark> marks);
+
+// The charge's extent: an arc outside the rim from toe to shoulder; none where one of them is NaN.
+void draw_charge_arc(Canvas& canvas, const MillShape& shape, double toe_deg, double shoulder_deg);
+
+// Letters that can be read on balls.
+void add_on_charge(Canvas& canvas, std::string_view words, double x, double baseline, const TextStyle& style);
 
 // A curved arrow that shows which way the mill turns; nothing for a mill that stands still. speed in [rad/s].
 void draw_rotation(Canvas& canvas, const MillShape& shape, double speed);
@@ -18,5 +36,10 @@ void draw_gravity(Canvas& canvas);
 // is long) when those are drawn, NaN without them; on a plate where it lies over the mill. Shell's radius in [m].
 void draw_scale_bar(Canvas& canvas, const Vec2& left_end, double shell_radius, double arrow_seconds,
                     bool is_over_mill = false);
+
+// What the lines over the charge stand for: rows down from `corner` [px], on its right (Align::kLeft) or left side; on
+// a plate where they lie over the mill.
+void draw_key(Canvas& canvas, const Vec2& corner, Align side, const Overlay& overlay, const ChainScale& chains,
+              bool is_over_mill = false);
 
 }  // namespace tumble::render

@@ -156,6 +156,15 @@ void Meshes::ring(const Vec2& centre, double inner, double outer, double from, d
     return recorder_.add(
         Drawing::Ring{centre, inner, outer, from, to, mix(colour_inner(middle), colour_outer(middle), 0.5)});
   }
+  if (const double width = outer - inner;
+      inner > 0 && width < 2 * kFeather - 1e-6) {  // thinner than a pixel: a paler one
+    const double middle = (inner + outer) / 2;
+    const auto paler = [width](const std::function<Rgba(double)>& colour) {
+      return [width, &colour](double angle) { return with_alpha(colour(angle), width); };
+    };
+    const auto pale_inner = paler(colour_inner), pale_outer = paler(colour_outer);
+    return ring(centre, middle - kFeather, middle + kFeather, from, to, pale_inner, pale_outer);
+  }
   // Chords whose sagitta stays below a twentieth of a pixel.
   const double step = 2 * std::acos(1 - std::min(0.05 / std::max(outer, 1.0), 0.5));
   const int n = std::max(1, static_cast<int>(std::ceil(std::abs(to - from) / step)));

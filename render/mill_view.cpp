@@ -18,10 +18,10 @@ constexpr double kBoltShare = 1 + 0.62 * (kRimShare - 1);   // radius of the bol
 constexpr Rgba kShadow{8, 10, 13};
 
 // Turned steel under one light: bright towards it, with the fainter sheen that a lathe leaves opposite.
-std::function<Rgba(double)> steel(double brightness) {
-  return [brightness](double angle) {
+std::function<Rgba(double)> steel(const Theme& theme, double brightness) {
+  return [&theme, brightness](double angle) {
     const double sheen = 0.62 + 0.28 * std::cos(angle - kLightAngle) + 0.10 * std::cos(2 * (angle - kLightAngle));
-    return scaled(ink::kSteel, brightness * sheen);
+    return scaled(theme.steel, brightness * sheen);
   };
 }
 
@@ -72,7 +72,7 @@ void draw_lifter(Canvas& canvas, const LifterSection& section, double liner, dou
   const auto seen = [&](const Vec2& p) -> Vec2 {
     return camera.image_from_mill(c * p.x() - s * p.y(), s * p.x() + c * p.y());
   };
-  const Rgba foot = scaled(ink::kSteel, 0.55), tip = scaled(ink::kSteel, 0.80);
+  const Rgba foot = scaled(canvas.theme.steel, 0.55), tip = scaled(canvas.theme.steel, 0.80);
 
   // Counter-clockwise, feet first.
   std::vector<Vec2> body{chain.front()};
@@ -127,7 +127,7 @@ void draw_bolts(Canvas& canvas, const MillShape& shape, double mill_angle) {
     for (int i = 0; i < 12; ++i) washer.push_back(centre + 1.4 * radius * camera.direction(angle + i * kPi / 6));
     for (int i = 0; i < 6; ++i) head.push_back(centre + radius * camera.direction(angle + i * kPi / 3));
     canvas.meshes.convex(washer, with_alpha(kShadow, 0.6));
-    canvas.meshes.convex(head, scaled(ink::kSteel, 0.9));
+    canvas.meshes.convex(head, scaled(canvas.theme.steel, 0.9));
   }
 }
 
@@ -139,11 +139,13 @@ void draw_shell(Canvas& canvas, const MillShape& shape) {
   const double radius = shape.radius * camera.pixels_per_metre;
   const double outer = radius * kRimShare, liner = radius * kLinerShare;
   auto& m = canvas.meshes;
-  m.ring(centre, 0, radius + 1, 0, 2 * kPi, ink::kMillInside);
-  m.ring(centre, radius, outer, 0, 2 * kPi, steel(0.44), steel(0.62));                      // shell plate
-  m.ring(centre, outer - canvas.px(2.0), outer, 0, 2 * kPi, steel(1.0), steel(1.0));        // its lit edge
-  m.ring(centre, radius, liner, 0, 2 * kPi, steel(0.85), steel(0.72));                      // liner
-  m.ring(centre, liner, liner + canvas.stroke(1.1), 0, 2 * kPi, with_alpha(kShadow, 0.8));  // its joint
+  const auto plate = [&](double brightness) { return steel(canvas.theme, canvas.theme.plate_brightness * brightness); };
+  m.ring(centre, 0, radius + 1, 0, 2 * kPi, canvas.theme.mill_inside);
+  m.ring(centre, radius, outer, 0, 2 * kPi, plate(0.44), plate(0.62));  // shell plate
+  m.ring(centre, outer - canvas.px(2.0), outer, 0, 2 * kPi, steel(canvas.theme, 1.0),
+         steel(canvas.theme, 1.0));                                                                 // its lit edge
+  m.ring(centre, radius, liner, 0, 2 * kPi, steel(canvas.theme, 0.85), steel(canvas.theme, 0.72));  // liner
+  m.ring(centre, liner, liner + canvas.stroke(1.1), 0, 2 * kPi, with_alpha(kShadow, 0.8));          // its joint
 }
 
 void draw_lifters(Canvas& canvas, const MillShape& shape, double mill_angle) {

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <initializer_list>
 #include <vector>
 
 namespace tumble::render {
@@ -41,21 +40,6 @@ Rgba rgba(const Oklab& c) {
           byte(srgb(-0.0041960863 * l - 0.7034186147 * m + 1.7076147010 * s))};
 }
 
-// Colours at equal distances along the scale, joined by a monotone walk in Oklab.
-Palette blend(std::initializer_list<Rgba> stops) {
-  std::vector<Oklab> lab;
-  for (const Rgba& stop : stops) lab.push_back(oklab(stop));
-  Palette palette;
-  for (int i = 0; i < 256; ++i) {
-    const double place = i / 255.0 * static_cast<double>(lab.size() - 1);
-    const std::size_t k = std::min(static_cast<std::size_t>(place), lab.size() - 2);
-    const double t = place - static_cast<double>(k);
-    const Oklab &p = lab[k], &q = lab[k + 1];
-    palette.colours[i] = rgba({p.l + t * (q.l - p.l), p.a + t * (q.a - p.a), p.b + t * (q.b - p.b)});
-  }
-  return palette;
-}
-
 }  // namespace
 
 Rgba with_alpha(Rgba colour, double alpha) {
@@ -77,23 +61,24 @@ Rgba Palette::at(double share) const {
   return colours[static_cast<std::size_t>(std::lround(std::min(share, 1.0) * 255.0))];
 }
 
-const Palette& sequential_palette() {
-  static const Palette palette = blend({{74, 82, 160},
-                                        {58, 116, 180},
-                                        {56, 152, 176},
-                                        {92, 184, 146},
-                                        {168, 208, 104},
-                                        {238, 218, 96},
-                                        {255, 244, 190}});
-  return palette;
-}
-
-const Palette& diverging_palette() {
-  static const Palette palette =
-      blend({{46, 108, 190}, {118, 170, 220}, {226, 228, 230}, {236, 160, 108}, {190, 66, 52}});
+Palette blend(std::initializer_list<Rgba> stops) {
+  std::vector<Oklab> lab;
+  for (const Rgba& stop : stops) lab.push_back(oklab(stop));
+  Palette palette;
+  for (int i = 0; i < 256; ++i) {
+    const double place = i / 255.0 * static_cast<double>(lab.size() - 1);
+    const std::size_t k = std::min(static_cast<std::size_t>(place), lab.size() - 2);
+    const double t = place - static_cast<double>(k);
+    const Oklab &p = lab[k], &q = lab[k + 1];
+    palette.colours[i] = rgba({p.l + t * (q.l - p.l), p.a + t * (q.a - p.a), p.b + t * (q.b - p.b)});
+  }
   return palette;
 }
 
 double lightness(Rgba colour) { return oklab(colour).l; }
+
+double luminance(Rgba colour) {
+  return 0.2126 * linear(colour.r) + 0.7152 * linear(colour.g) + 0.0722 * linear(colour.b);
+}
 
 }  // namespace tumble::render

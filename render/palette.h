@@ -1,6 +1,6 @@
 #pragma once
 #include <cstdint>
-#include <span>
+#include <initializer_list>
 
 #include "core/drawing.h"
 
@@ -16,24 +16,12 @@ struct Palette {
   Rgba at(double share) const;  // share in [0, 1]; beyond it the ends
 };
 
-// For magnitudes: lightness rises all the way, so that it also reads in print and to colour-blind eyes.
-const Palette& sequential_palette();
-// For signed values: cool below, warm above, pale in the middle.
-const Palette& diverging_palette();
+// A scale through colours at equal distances along it.
+Palette blend(std::initializer_list<Rgba> stops);
 
 // Lightness L of Oklab in [0, 1].
 double lightness(Rgba colour);
-
-// The picture's own colours: one dark ground, greys of steel, one accent.
-namespace ink {
-inline constexpr Rgba kGround{14, 17, 22};
-inline constexpr Rgba kMillInside{37, 43, 53};
-inline constexpr Rgba kSteel{176, 186, 197};
-inline constexpr Rgba kText{236, 240, 245};
-inline constexpr Rgba kQuiet{146, 156, 170};  // labels, axes
-inline constexpr Rgba kFaint{52, 59, 70};     // rules, frames
-inline constexpr Rgba kAccent{255, 179, 71};  // toe, shoulder, cursor
-inline constexpr Rgba kTrace{111, 190, 230};  // the torque's line
-}  // namespace ink
+// Relative luminance of an sRGB colour in [0, 1].
+double luminance(Rgba colour);
 
 }  // namespace tumble::render

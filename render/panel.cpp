@@ -15,7 +15,7 @@ namespace {
 constexpr double kBarHeight = 12;  // of the colour bar [units]
 
 TextStyle quiet(const Canvas& canvas, double size, Align align = Align::kLeft) {
-  return {canvas.letter(size), ink::kQuiet, Weight::kRegular, align};
+  return {canvas.letter(size), canvas.theme.quiet, Weight::kRegular, align};
 }
 
 // Where things stand in the panel [px]. What is left between the readings and the colour scale belongs to the torque.
@@ -46,7 +46,7 @@ struct Plan {
 
 void rule(Canvas& canvas, double y) {
   const Box& panel = canvas.layout.panel;
-  canvas.meshes.line({panel.left, std::round(y)}, {panel.right, std::round(y)}, canvas.stroke(1.0), ink::kFaint);
+  canvas.meshes.line({panel.left, std::round(y)}, {panel.right, std::round(y)}, canvas.stroke(1.0), canvas.theme.faint);
 }
 
 // Letters do not shrink below what can be read, so lines of a tiny picture would stand in each other: which are so many
@@ -55,14 +55,14 @@ bool has_room(const Canvas& canvas, double units_between_lines) { return canvas.
 
 // A small label, a value below it, and a remark below that.
 void value_and_unit(Canvas& canvas, double x, double y, const std::string& value, const std::string& unit) {
-  const TextStyle large{canvas.letter(23), ink::kText, Weight::kBold};
+  const TextStyle large{canvas.letter(23), canvas.theme.text, Weight::kBold};
   canvas.text.add(value, x, y + canvas.px(28), large);
   canvas.text.add(unit, x + canvas.text.width(value, large) + canvas.px(5), y + canvas.px(28),
-                  {canvas.letter(13), ink::kText});
+                  {canvas.letter(13), canvas.theme.text});
 }
 
 void label_and_remark(Canvas& canvas, double x, double y, const std::string& label, const std::string& remark) {
-  canvas.text.add(label, x, y, quiet(canvas, 12.5));
+  if (has_room(canvas, 28)) canvas.text.add(label, x, y, quiet(canvas, 12.5));
   if (has_room(canvas, 19)) canvas.text.add(remark, x, y + canvas.px(47), quiet(canvas, 12.5));
 }
 
@@ -77,7 +77,8 @@ void draw_colour_bar(Canvas& canvas, double left, double right, double top, cons
   const TextStyle label = quiet(canvas, 12, Align::kCentre);
   for (const Tick& tick : ticks(scale.low, scale.high, 5)) {
     const double x = left + (right - left) * (tick.value - scale.low) / (scale.high - scale.low);
-    canvas.meshes.line({x, bottom}, {x, bottom + canvas.px(4)}, canvas.stroke(1.0), with_alpha(ink::kQuiet, 0.7));
+    canvas.meshes.line({x, bottom}, {x, bottom + canvas.px(4)}, canvas.stroke(1.0),
+                       with_alpha(canvas.theme.quiet, 0.7));
     const double half = canvas.text.width(tick.label, label) / 2;
     canvas.text.add(tick.label, std::clamp(x, left + half, right - half), bottom + canvas.px(7) + 0.8 * label.size,
                     label);
@@ -97,7 +98,7 @@ void draw_classes(Canvas& canvas, double left, double right, double top, const C
     disc.colour = scale.colour_of(radius);
     canvas.discs.add(disc);
     canvas.text.add(fmt::format("{:.3g}", 1000 * radius), x + canvas.px(28), top + canvas.px(13),
-                    {canvas.letter(13), ink::kText});
+                    {canvas.letter(13), canvas.theme.text});
     x += step;
   }
 }
@@ -110,6 +111,10 @@ const char* title_of(Colour by) {
       return "Ball radius, mm";
     case Colour::kSpin:
       return "Ball spin, rad/s (> 0 in the mill's sense)";
+    case Colour::kResidence:
+      return "Time in the bed since the last flight, s";
+    case Colour::kForce:
+      return "Largest contact force, N";
     case Colour::kSteel:
       break;
   }
@@ -175,8 +180,9 @@ std::optional<TorquePlot> place_torque_plot(Canvas& canvas, const TorqueTrace& t
 void draw_still_panel(Canvas& canvas, const Panel& panel, bool pale) {
   const Plan plan(canvas, panel.scale.by);
   auto& text = canvas.text;
-  text.add(mill_in_words(panel.setup.config), plan.left, plan.y(18), {canvas.letter(21), ink::kText, Weight::kBold});
-  text.add(charge_in_words(panel.setup), plan.left, plan.y(42), quiet(canvas, 13));
+  text.add(mill_in_words(panel.setup.config), plan.left, plan.y(18),
+           {canvas.letter(21), canvas.theme.text, Weight::kBold});
+  if (has_room(canvas, 24)) text.add(charge_in_words(panel.setup), plan.left, plan.y(42), quiet(canvas, 13));
   rule(canvas, plan.y(62));
   text.add(time_note(panel.slow), plan.right, plan.y(116), quiet(canvas, 13, Align::kRight));
 
@@ -194,10 +200,9 @@ void draw_still_panel(Canvas& canvas, const Panel& panel, bool pale) {
   rule(canvas, plan.y(214));
 
   if (panel.plot) {
-    text.add("Torque of one slice, N m", plan.left, plan.y(240), {canvas.letter(13), ink::kText});
-    if (!plan.is_small)
-      text.add("running mean over a lifter passage; time, s", plan.right, plan.y(240),
-               quiet(canvas, 11, Align::kRight));
+    text.add("Torque of one slice, N m", plan.left, plan.y(240), {canvas.letter(13), canvas.theme.text});
+    text.add(plan.is_small ? "time, s" : "running mean over a lifter passage; time, s", plan.right, plan.y(240),
+             quiet(canvas, 11, Align::kRight));
     draw_torque_curve(canvas, *panel.plot, panel.trace, pale);
   }
 
@@ -208,7 +213,7 @@ void draw_still_panel(Canvas& canvas, const Panel& panel, bool pale) {
 void draw_colour_scale(Canvas& canvas, double left, double right, double top, const ColourScale& scale,
                        const std::set<double>& radii) {
   if (scale.by == Colour::kSteel) return;
-  canvas.text.add(title_of(scale.by), left, top - canvas.px(11), {canvas.letter(13), ink::kText});
+  canvas.text.add(title_of(scale.by), left, top - canvas.px(11), {canvas.letter(13), canvas.theme.text});
   if (scale.by == Colour::kSize && radii.size() <= 6) {
     draw_classes(canvas, left, right, top, scale, radii);
   } else {
@@ -224,10 +229,11 @@ void draw_colour_scale(Canvas& canvas, double left, double right, double top, co
 void draw_moving_panel(Canvas& canvas, const Panel& panel, const Frame& frame) {
   const Plan plan(canvas, panel.scale.by);
   auto& text = canvas.text;
-  const TextStyle clock{canvas.letter(40), ink::kText, Weight::kBold};
+  const TextStyle clock{canvas.letter(40), canvas.theme.text, Weight::kBold};
   const std::string seconds = fmt::format("{:.2f}", frame.time);
   text.add(seconds, plan.left, plan.y(116), clock);
-  text.add("s", plan.left + text.width(seconds, clock) + canvas.px(8), plan.y(116), {canvas.letter(20), ink::kQuiet});
+  text.add("s", plan.left + text.width(seconds, clock) + canvas.px(8), plan.y(116),
+           {canvas.letter(20), canvas.theme.quiet});
   const double revolutions = frame.time * std::abs(panel.setup.mill_speed) / (2 * kPi);
   if (has_room(canvas, 21))
     text.add(fmt::format("revolution {:.2f}", revolutions), plan.right, plan.y(95), quiet(canvas, 13, Align::kRight));

@@ -13,6 +13,7 @@
 #include "render/canvas.h"
 #include "render/charge_view.h"
 #include "render/marks.h"
+#include "render/mean_view.h"
 #include "render/mill_view.h"
 #include "render/offscreen_context.h"
 #include "render/panel.h"
@@ -37,7 +38,7 @@ const Style& checked(const Style& style) {
 // the spin of the smallest ball rolling on the shell.
 ColourScale first_scale(const RunSetup& setup, const Style& style) {
   const double radius = setup.config.mill.diameter / 2;
-  ColourScale scale{style.colour, 0, std::sqrt(2 * kGravity * radius)};
+  ColourScale scale{style.colour, 0, std::sqrt(2 * kGravity * radius), &theme_of(style)};
   const auto& radii = setup.balls.radius;
   if (radii.empty()) return scale;
   const auto [smallest, largest] = std::minmax_element(radii.begin(), radii.end());
@@ -58,12 +59,13 @@ struct Renderer::Impl {
       : setup(run),
         style(checked(wanted)),
         shape(make_mill_shape(run.config)),
+        theme(theme_of(style)),
         context(style.width, style.height, style.context),
         scale(first_scale(run, style)) {
     const CurrentContext current(context);
     canvas = std::make_unique<Canvas>(
         style.width, style.height,
-        make_layout(style.width, style.height, shape, style.overlay.text, style.mirror, style.view.zoom));
+        make_layout(style.width, style.height, shape, style.overlay.text, style.mirror, style.view.zoom), theme);
     layout = canvas->layout;
     coming = std::make_unique<StillLayer>(style.width, style.height);
     been = std::make_unique<StillLayer>(style.width, style.height);
@@ -74,7 +76,8 @@ struct Renderer::Impl {
   double arrow_seconds() const { return 0.11 * natural_time(); }
   double natural_time() const { return std::sqrt(shape.radius / kGravity); }  // of a fall in this mill [s]
 
-  void draw_scale();
+  Box notes() const;  // at whose corners scale and key stand: near the mill, and inside what is shown
+  void draw_scale_and_key();
 
   Box past_of_plot(const Frame& frame) const {
     return {plot->box.left, plot->box.top, std::min(plot->x_of(frame.time), plot->box.right), plot->box.bottom};
@@ -84,12 +87,16 @@ struct Renderer::Impl {
   void draw_moving(const Frame& frame, const Moment& moment);
   void paint_still(StillLayer& layer, bool pale);
   void paint_still_layers(const Moment& moment);
+  void draw_rim(const Moment& moment);
 
   RunSetup setup;
   Style style;
   MillShape shape;
+  const Theme& theme;
   OffscreenContext context;
   ColourScale scale;
+  double widest_chain = 1;  // [N]
+  MeanView mean;
   TorqueTrace trace;
   std::optional<TorquePlot> plot;
   bool is_painted = false;  // the still layers, for the scale and trace above
@@ -98,11 +105,25 @@ struct Renderer::Impl {
   std::unique_ptr<StillLayer> coming, been;  // with the torque's curve pale, and bright
 };
 
-void Renderer::Impl::draw_scale() {
-  const bool is_over_mill = style.view.is_cut();
-  const Box& box = is_over_mill ? layout.view : layout.picture;
-  draw_scale_bar(*canvas, {box.left + canvas->px(28), box.bottom - canvas->px(30)}, shape.radius,
-                 style.overlay.velocity ? arrow_seconds() : kNotGiven, is_over_mill);
+Box Renderer::Impl::notes() const {
+  const auto px = [this](double units) { return canvas->px(units); };
+  const Box& box = style.view.is_cut() ? layout.view : layout.picture;
+  Box notes{box.left + px(28), box.top + px(34), layout.view.right - px(28), box.bottom - px(30)};
+  if (style.view.is_cut()) return notes;
+  notes.left = std::max(notes.left, layout.camera.centre_u - px(372));
+  notes.top = std::max(notes.top, layout.camera.centre_v - px(326));
+  notes.bottom = std::min(notes.bottom, layout.camera.centre_v + px(330));
+  return notes;
+}
+
+void Renderer::Impl::draw_scale_and_key() {
+  const bool is_over_mill = style.view.is_cut(), has_arrows = style.overlay.velocity || style.overlay.mean_velocity;
+  const Box box = notes();
+  draw_scale_bar(*canvas, {box.left, box.bottom}, shape.radius, has_arrows ? arrow_seconds() : kNotGiven, is_over_mill);
+  // The upper left corner of a view that turns says where down is.
+  const Align side = style.view.from == View::From::kShell ? Align::kRight : Align::kLeft;
+  draw_key(*canvas, {side == Align::kRight ? box.right : box.left, box.top}, side, style.overlay,
+           chain_scale(*canvas, setup.balls, widest_chain), is_over_mill);
 }
 
 void Renderer::Impl::draw_still(bool pale) {
@@ -110,7 +131,7 @@ void Renderer::Impl::draw_still(bool pale) {
   if (!style.view.is_cut()) draw_shell(*canvas, shape);
   if (style.overlay.text) {
     if (style.view.from == View::From::kLab && !style.view.is_cut()) draw_rotation(*canvas, shape, setup.mill_speed);
-    if (!style.view.is_cut()) draw_scale();
+    if (!style.view.is_cut()) draw_scale_and_key();
     draw_still_panel(*canvas, panel(), pale);
   }
   canvas->flush();
@@ -134,11 +155,39 @@ void Renderer::Impl::paint_still_layers(const Moment& moment) {
   is_painted = true;
 }
 
+void Renderer::Impl::draw_rim(const Moment& moment) {
+  const Overlay& shown = style.overlay;
+  const auto angle = [](bool wanted, double value) { return wanted ? value : kNotGiven; };
+  const double toe = angle(shown.toe, moment.toe_deg), shoulder = angle(shown.shoulder, moment.shoulder_deg);
+  const RimMark marks[] = {{"departure", angle(shown.departure, mean.departure_deg), theme.second},
+                           {"impact", angle(shown.impact, mean.impact_toe_deg), theme.second},
+                           {"toe", toe, theme.accent},
+                           {"shoulder", shoulder, theme.accent}};
+  draw_charge_arc(*canvas, shape, toe, shoulder);
+  draw_rim_marks(*canvas, shape, marks);
+}
+
+bool shows_mean(const Overlay& o) {
+  return o.occupancy || o.streamlines || o.mean_velocity || o.surface || o.head || o.circulation || o.departure ||
+         o.impact;
+}
+bool shows_forces(const Style& style) { return style.overlay.chains || style.colour == Colour::kForce; }
+bool shows_residence(const Style& style) { return style.colour == Colour::kResidence; }
+
 Renderer::Renderer(const RunSetup& setup, const Style& style) : impl_(std::make_unique<Impl>(setup, style)) {}
 Renderer::~Renderer() = default;
 
 void Renderer::set_scale(double low, double high) {
   impl_->scale.set_ends(low, high);
+  impl_->is_painted = false;
+}
+
+void Renderer::set_mean(const ChargeMotion& motion) {
+  impl_->mean = make_mean_view(motion, impl_->style.overlay, 1 / impl_->layout.camera.pixels_per_metre);
+}
+
+void Renderer::set_force_scale(double high) {
+  impl_->widest_chain = high;
   impl_->is_painted = false;
 }
 
@@ -158,17 +207,19 @@ void Renderer::Impl::draw_moving(const Frame& frame, const Moment& moment) {
     draw_shell(*canvas, shape);
   }
   draw_lifters(*canvas, shape, frame.mill_angle);
-  if (overlay.tracks) draw_trails(*canvas, setup.balls, frame, moment.past, trail_seconds(), scale, camera_then);
+  const ChargeView charge{setup.balls, frame, moment.of_ball, scale};
+  if (overlay.tracks) draw_trails(*canvas, charge, moment.past, trail_seconds(), camera_then);
   canvas->meshes.flush();
-  draw_balls(*canvas, setup.balls, frame, scale);
+  draw_balls(*canvas, charge);
   canvas->discs.flush();
+  if (overlay.chains) draw_chains(*canvas, frame, moment.contacts, chain_scale(*canvas, setup.balls, widest_chain));
+  draw_mean(*canvas, shape, mean, overlay, arrow_seconds());
   if (overlay.velocity) draw_velocities(*canvas, setup.balls, frame, arrow_seconds());
-  draw_toe_and_shoulder(*canvas, shape, overlay.toe ? moment.toe_deg : kNotGiven,
-                        overlay.shoulder ? moment.shoulder_deg : kNotGiven);
+  draw_rim(moment);
   if (view.from == View::From::kBall) draw_followed(*canvas, setup.balls, frame, view.ball);
   if (view.from == View::From::kShell) draw_gravity(*canvas);
   if (view.is_cut()) {
-    if (overlay.text) draw_scale();
+    if (overlay.text) draw_scale_and_key();
     canvas->flush();
     canvas->unclip();
   }
@@ -190,7 +241,7 @@ const Image& Renderer::draw(const Frame& frame, const Moment& moment) {
 
 Drawing Renderer::sketch(const Frame& frame, const Moment& moment) {
   Impl& my = *impl_;
-  Drawing drawing{my.style.width, my.style.height, ink::kGround, {}};
+  Drawing drawing{my.style.width, my.style.height, my.theme.ground, {}};
   const CurrentContext current(my.context);
   my.paint_still_layers(moment);
   Canvas& canvas = *my.canvas;
@@ -199,7 +250,7 @@ Drawing Renderer::sketch(const Frame& frame, const Moment& moment) {
   if (my.style.overlay.text && my.plot) {
     const Box past = my.past_of_plot(frame);
     canvas.clip(past);
-    canvas.meshes.rectangle(past.left, past.top, past.right, past.bottom, ink::kGround);
+    canvas.meshes.rectangle(past.left, past.top, past.right, past.bottom, my.theme.ground);
     my.draw_still(false);
     canvas.unclip();
   }

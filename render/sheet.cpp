@@ -74,6 +74,7 @@ std::string fitted(Text& text, std::string label, const TextStyle& style, double
 struct Sheet::Furniture {
   Furniture(const std::vector<SheetMill>& wanted, const Style& wanted_style)
       : style(wanted_style),
+        theme(theme_of(style)),
         largest(*std::max_element(wanted.begin(), wanted.end(),
                                   [](const auto& a, const auto& b) { return radius_of(a) < radius_of(b); })),
         context(style.width, style.height, style.context) {
@@ -82,6 +83,7 @@ struct Sheet::Furniture {
       radii.insert(mill.setup.balls.radius.begin(), mill.setup.balls.radius.end());
     }
     scale.by = style.colour;
+    scale.theme = &theme;
     const CurrentContext current(context);
     Layout layout;
     layout.unit = std::min(style.width / 900.0, style.height / 720.0);
@@ -89,7 +91,7 @@ struct Sheet::Furniture {
     layout.zoom = style.view.zoom;
     cells = place_cells(style.width, style.height, wanted.size(), layout.unit);
     layout.camera.pixels_per_metre = style.view.zoom * kShellRadiusUnits * (cells.edge / 720.0) / radius_of(largest);
-    canvas = std::make_unique<Canvas>(style.width, style.height, layout);
+    canvas = std::make_unique<Canvas>(style.width, style.height, layout, theme);
     still = std::make_unique<StillLayer>(style.width, style.height);
   }
 
@@ -104,15 +106,15 @@ struct Sheet::Furniture {
   void draw_still() const {
     const auto px = [this](double units) { return canvas->px(units); };
     for (std::size_t i = 0; i < labels.size(); ++i) {
-      TextStyle name{canvas->letter(17), ink::kText, Weight::kBold, Align::kCentre};
+      TextStyle name{canvas->letter(17), theme.text, Weight::kBold, Align::kCentre};
       while (name.size > canvas->letter(12) && canvas->text.width(labels[i], name) > cells.edge) name.size -= 1;
       canvas->text.add(fitted(canvas->text, labels[i], name, cells.edge), cells.left(i) + cells.edge / 2.0,
                        cells.top(i) - px(8), name);
     }
     const double top = style.height - px(kFoot - 16);
     canvas->meshes.line({px(kMargin), std::round(top - px(14))}, {style.width - px(kMargin), std::round(top - px(14))},
-                        canvas->stroke(1.0), ink::kFaint);
-    canvas->text.add(time_note(style.slow), px(kMargin + 118), top + px(38), {canvas->letter(13), ink::kQuiet});
+                        canvas->stroke(1.0), theme.faint);
+    canvas->text.add(time_note(style.slow), px(kMargin + 118), top + px(38), {canvas->letter(13), theme.quiet});
     draw_scale_bar(*canvas, {style.width * 0.33, style.height - px(30)}, radius_of(largest), kNotGiven);
     const double right = style.width - px(kMargin);
     draw_colour_scale(*canvas, right - px(440), right, top + px(24), scale, radii);
@@ -120,16 +122,17 @@ struct Sheet::Furniture {
   }
 
   void draw_clock(double clock) const {
-    const TextStyle large{canvas->letter(28), ink::kText, Weight::kBold};
+    const TextStyle large{canvas->letter(28), theme.text, Weight::kBold};
     const std::string seconds = fmt::format("{:.2f}", clock);
     const double baseline = style.height - canvas->px(kFoot - 54), left = canvas->px(kMargin);
     canvas->text.add(seconds, left, baseline, large);
     canvas->text.add("s", left + canvas->text.width(seconds, large) + canvas->px(6), baseline,
-                     {canvas->letter(17), ink::kQuiet});
+                     {canvas->letter(17), theme.quiet});
     canvas->flush();
   }
 
   Style style;
+  const Theme& theme;
   SheetMill largest;
   std::vector<std::string> labels;
   std::set<double> radii;
@@ -155,6 +158,12 @@ void Sheet::set_scale(double low, double high) {
   if (!furniture_) return;
   furniture_->scale.set_ends(low, high);
   furniture_->is_painted = false;
+}
+
+void Sheet::set_mean(std::size_t mill, const ChargeMotion& motion) { cells_[mill]->set_mean(motion); }
+
+void Sheet::set_force_scale(double high) {
+  for (const auto& cell : cells_) cell->set_force_scale(high);
 }
 
 double Sheet::trail_seconds() const {
@@ -190,7 +199,7 @@ const Image& Sheet::draw(std::span<const Frame> frames, std::span<const Moment> 
 Drawing Sheet::sketch(std::span<const Frame> frames, std::span<const Moment> moments, double clock) {
   if (!furniture_) return cells_[0]->sketch(frames[0], moments[0]);
   Furniture& my = *furniture_;
-  Drawing drawing{my.style.width, my.style.height, ink::kGround, {}};
+  Drawing drawing{my.style.width, my.style.height, my.theme.ground, {}};
   {
     const CurrentContext current(my.context);
     my.canvas->record_into(&drawing);

@@ -23,8 +23,10 @@ class Sheet {
   Sheet(const Sheet&) = delete;
   Sheet& operator=(const Sheet&) = delete;
 
-  void set_scale(double low, double high);  // as Renderer::set_scale, for all
-  double trail_seconds() const;             // the longest
+  void set_scale(double low, double high);                      // as Renderer::set_scale, for all
+  void set_mean(std::size_t mill, const ChargeMotion& motion);  // as Renderer::set_mean, of one
+  void set_force_scale(double high);                            // as Renderer::set_force_scale, for all
+  double trail_seconds() const;                                 // the longest
 
   // A frame and its moment for every mill; `clock`: since the film began [s], shown where there are several mills.
   // The picture is valid until the next draw.

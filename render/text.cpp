@@ -130,8 +130,20 @@ double Text::width(std::string_view utf8, const TextStyle& style) {
 void Text::add(std::string_view utf8, double x, double baseline, const TextStyle& style) {
   if (recorder_.is_on()) {
     const double anchor = style.align == Align::kLeft ? 0.0 : style.align == Align::kCentre ? 0.5 : 1.0;
-    return recorder_.add(Drawing::Label{
-        std::string(utf8), {x, baseline}, style.size, style.weight == Weight::kBold, anchor, style.colour});
+    return recorder_.add(Drawing::Label{std::string(utf8),
+                                        {x, baseline},
+                                        style.size,
+                                        style.weight == Weight::kBold,
+                                        anchor,
+                                        style.colour,
+                                        style.halo,
+                                        style.halo_width});
+  }
+  if (style.halo_width > 0) {
+    const TextStyle behind{style.size, style.halo, style.weight, style.align};
+    for (int dx = -1; dx <= 1; ++dx)
+      for (int dy = -1; dy <= 1; ++dy)
+        if (dx != 0 || dy != 0) add(utf8, x + dx * style.halo_width, baseline + dy * style.halo_width, behind);
   }
   const int size = static_cast<int>(std::lround(style.size));
   if (style.align != Align::kLeft) x -= width(utf8, style) * (style.align == Align::kCentre ? 0.5 : 1.0);

@@ -19,6 +19,8 @@ struct TextStyle {
   Rgba colour;
   Weight weight = Weight::kRegular;
   Align align = Align::kLeft;
+  Rgba halo{0, 0, 0, 0};  // round the letters, so that they read on anything
+  double halo_width = 0;  // [px]
 };
 
 // UTF-8 text in DejaVu Sans by FreeType, each glyph rasterised once at its size and set on whole pixels: crisp.

@@ -13,7 +13,7 @@ namespace tumble::render {
 namespace {
 
 TextStyle axis_text(const Canvas& canvas, Align align) {
-  return {canvas.letter(12), ink::kQuiet, Weight::kRegular, align};
+  return {canvas.letter(12), canvas.theme.quiet, Weight::kRegular, align};
 }
 
 }  // namespace
@@ -89,12 +89,13 @@ void draw_torque_curve(Canvas& canvas, const TorquePlot& plot, const TorqueTrace
   const TextStyle beside = axis_text(canvas, Align::kRight), under = axis_text(canvas, Align::kCentre);
   for (const Tick& tick : ticks(plot.low, plot.high, 4)) {
     const double y = std::round(plot.y_of(tick.value));
-    m.line({box.left, y}, {box.right, y}, hair, tick.value == 0 ? with_alpha(ink::kQuiet, 0.7) : ink::kFaint);
+    m.line({box.left, y}, {box.right, y}, hair,
+           tick.value == 0 ? with_alpha(canvas.theme.quiet, 0.7) : canvas.theme.faint);
     canvas.text.add(tick.label, box.left - canvas.px(8), y + 0.36 * beside.size, beside);
   }
   for (const Tick& tick : ticks(plot.start, plot.end, 5)) {
     const double x = std::round(plot.x_of(tick.value));
-    m.line({x, box.bottom}, {x, box.bottom + canvas.px(4)}, hair, with_alpha(ink::kQuiet, 0.7));
+    m.line({x, box.bottom}, {x, box.bottom + canvas.px(4)}, hair, with_alpha(canvas.theme.quiet, 0.7));
     const double half = canvas.text.width(tick.label, under) / 2;
     canvas.text.add(tick.label, std::min(x, box.right - half), box.bottom + canvas.px(7) + 0.8 * under.size, under);
   }
@@ -112,25 +113,25 @@ void draw_torque_curve(Canvas& canvas, const TorquePlot& plot, const TorqueTrace
     }
     if (std::isnan(smallest)) continue;
     m.rectangle(plot.x_of(time_of(i, bins)), plot.y_of(largest), plot.x_of(time_of(i + 1, bins)), plot.y_of(smallest),
-                with_alpha(ink::kTrace, pale ? 0.07 : 0.18));
+                with_alpha(canvas.theme.trace, pale ? 0.07 : 0.18));
   }
   std::vector<Vec2> curve;
   for (int i = 0; i <= pixels; ++i) {
     const double time = time_of(i, pixels);
     curve.emplace_back(plot.x_of(time), plot.y_of(trace.running(time)));
   }
-  m.polyline(curve, canvas.stroke(pale ? 1.3 : 1.8), with_alpha(ink::kTrace, pale ? 0.4 : 1.0));
+  m.polyline(curve, canvas.stroke(pale ? 1.3 : 1.8), with_alpha(canvas.theme.trace, pale ? 0.4 : 1.0));
 
   const double mean = plot.y_of(trace.mean()), dash = canvas.px(6);
   for (double x = box.left; x < box.right; x += 2 * dash) {
-    m.line({x, mean}, {std::min(x + dash, box.right), mean}, hair, with_alpha(ink::kText, 0.75));
+    m.line({x, mean}, {std::min(x + dash, box.right), mean}, hair, with_alpha(canvas.theme.text, 0.75));
   }
 }
 
 void draw_torque_cursor(Canvas& canvas, const TorquePlot& plot, const TorqueTrace& trace, double now) {
   const double x = std::clamp(plot.x_of(now), plot.box.left, plot.box.right);
-  canvas.meshes.line({x, plot.box.top}, {x, plot.box.bottom}, canvas.stroke(1.2), ink::kAccent);
-  canvas.meshes.ring({x, plot.y_of(trace.running(now))}, 0, canvas.px(3.6), 0, 2 * kPi, ink::kAccent);
+  canvas.meshes.line({x, plot.box.top}, {x, plot.box.bottom}, canvas.stroke(1.2), canvas.theme.accent);
+  canvas.meshes.ring({x, plot.y_of(trace.running(now))}, 0, canvas.px(3.6), 0, 2 * kPi, canvas.theme.accent);
 }
 
 }  // namespace tumble::render

@@ -37,6 +37,11 @@ for threads in 1 3; do
 done
 cmp threads_1.mp4 threads_3.mp4 || fail "a film depends on the number of threads"
 ldd "$(dirname "$tumble")/tumble-render" | grep opencv && fail "tumble-render loads OpenCV: a rendering starts four times as slowly"
+looks=(--size 320x180 --theme light --colour force --overlay all)
+done_by render run.h5 -o looks/ "${looks[@]}" --threads 1
+done_by render run.h5 -o looks_again/ "${looks[@]}" --threads 2
+cmp looks/frame_000009.png looks_again/frame_000009.png || fail "a picture with all overlays depends on the number of threads"
+refused 'streamlines' render run.h5 -o film.mp4 --overlay toes # names what there is
 refused 'size' render run.h5 -o film.mp4 --size 4294968576x720 # 2^32 + 1280
 
 for key in torque_N_m torque_closure_N_m; do

@@ -1,4 +1,4 @@
-#include "render/palette.h"
+#include "render/theme.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@ namespace tumble::render {
 namespace {
 
 TEST(Palette, OfMagnitudesRisesInLightness) {
-  const Palette& palette = sequential_palette();
+  const Palette& palette = dark_theme().magnitude;
   for (int i = 1; i < 256; ++i) {
     // Eight bits a channel leave steps of about 0.004 uneven.
     EXPECT_GT(lightness(palette.colours[i]), lightness(palette.colours[i - 1]) - 0.004) << i;
@@ -18,7 +18,7 @@ TEST(Palette, OfMagnitudesRisesInLightness) {
 }
 
 TEST(Palette, OfSignedValuesIsPaleInTheMiddleAndEvenOnBothSides) {
-  const Palette& palette = diverging_palette();
+  const Palette& palette = dark_theme().of_sign;
   for (int i = 8; i < 128; ++i) {
     EXPECT_GT(lightness(palette.colours[i]), lightness(palette.colours[i - 8])) << i;
     EXPECT_GT(lightness(palette.colours[255 - i]), lightness(palette.colours[255 - i + 8])) << i;
@@ -28,7 +28,7 @@ TEST(Palette, OfSignedValuesIsPaleInTheMiddleAndEvenOnBothSides) {
 
 TEST(Palette, EndsWhereTheScaleEnds) {
   const auto same = [](Rgba a, Rgba b) { return a.r == b.r && a.g == b.g && a.b == b.b; };
-  const Palette& palette = sequential_palette();
+  const Palette& palette = dark_theme().magnitude;
   EXPECT_TRUE(same(palette.at(-3), palette.colours[0]));
   EXPECT_TRUE(same(palette.at(7), palette.colours[255]));
   EXPECT_TRUE(same(palette.at(std::nan("")), palette.colours[0]));

@@ -194,6 +194,145 @@ TEST(Renderer, TakesEveryMillThatAConfigCanHold) {
   }
 }
 
+// A mean motion whose parts lie far from one another: a charge that turns about (0.06, -0.1) m.
+ChargeMotion mean_motion() {
+  ChargeMotion m;
+  m.mill_radius = 0.2725;
+  m.field.n = 40;
+  m.field.cell = 2 * m.mill_radius / m.field.n;
+  for (int j = 0; j < m.field.n; ++j) {
+    for (int i = 0; i < m.field.n; ++i) {
+      const double x = (i - 19.5) * m.field.cell - 0.06, y = (j - 19.5) * m.field.cell + 0.1;
+      const bool inside = std::hypot(x, y) < 0.11;
+      m.field.occupancy.push_back(inside ? 0.7 : 0);
+      m.field.vx.push_back(inside ? -8 * y : NAN);
+      m.field.vy.push_back(inside ? 8 * x : NAN);
+    }
+  }
+  for (int k = 0; k <= 20; ++k) m.surface.push_back({-0.1 + 0.01 * k, 0.05});
+  m.head.value = 0.15;
+  m.centre_of_circulation_x.value = 0.06;
+  m.centre_of_circulation_y.value = -0.1;
+  m.departure_deg.value = 70;
+  m.impact_toe_deg.value = 200;
+  return m;
+}
+
+// Each overlay of the mean alone: the middle of what it changes, in the mill [m].
+TEST(Renderer, DrawsTheMeanWhereItLies) {
+  struct Case {
+    bool Overlay::*shown;
+    double x, y, within;
+  };
+  const double rim = 0.2725 * 1.12, degree = kPi / 180;
+  const Case cases[] = {
+      {&Overlay::occupancy, 0.06, -0.1, 0.02},
+      {&Overlay::streamlines, 0.06, -0.1, 0.02},
+      {&Overlay::mean_velocity, 0.06, -0.1, 0.02},
+      {&Overlay::surface, 0, 0.05, 0.004},
+      {&Overlay::circulation, 0.06, -0.1, 0.03},  // its name stands to the right
+      {&Overlay::departure, rim * std::cos(70 * degree), rim * std::sin(70 * degree), 0.03},
+      {&Overlay::impact, rim * std::cos(200 * degree), rim * std::sin(200 * degree), 0.03},
+  };
+  for (const bool mirror : {false, true}) {
+    const Scene scene = scene_of(paper_mill(), 0);
+    Style style;
+    style.mirror = mirror;
+    style.overlay = {};
+    style.overlay.text = false;
+    Renderer bare(scene.setup, style);
+    bare.set_mean(mean_motion());
+    const Image without = bare.draw(scene.frame, {});
+    const double scale = 302.4 / 0.2725;
+    for (const Case& c : cases) {
+      Style with = style;
+      with.overlay.*c.shown = true;
+      Renderer renderer(scene.setup, with);
+      EXPECT_EQ(largest_difference(renderer.draw(scene.frame, {}), without), 0);  // nothing is known yet
+      renderer.set_mean(mean_motion());
+      const Blob blob = changed(renderer.draw(scene.frame, {}), without);
+      EXPECT_NEAR((mirror ? -1 : 1) * (blob.u - 639.5) / scale, c.x, c.within) << &c - cases;
+      EXPECT_NEAR((359.5 - blob.v) / scale, c.y, c.within) << &c - cases;
+    }
+    Style head = style;
+    head.overlay.head = true;
+    Renderer renderer(scene.setup, head);
+    renderer.set_mean(mean_motion());
+    const Image image = renderer.draw(scene.frame, {});
+    const auto v = static_cast<int>(std::lround(359.5 - 0.15 * scale));
+    int dashes = 0;
+    for (int u = 420; u < 860; ++u) dashes += difference(image, without, v, u) > 60;
+    EXPECT_NEAR(dashes, 215, 40);  // half of the mill's width there
+  }
+}
+
+TEST(Renderer, DrawsForcesBetweenTheBallsThatPress) {
+  Scene scene = scene_of(paper_mill(), 3);
+  scene.frame.x = {-0.1, 0.1, 0.1};
+  scene.frame.y = {0, 0, -0.15};
+  Style style;
+  style.overlay.chains = true;
+  Renderer renderer(scene.setup, style);
+  renderer.set_force_scale(100);
+  const Image none = renderer.draw(scene.frame, {});
+  const auto with = [&](double force) {
+    const ContactForce contacts[] = {{0, 1, 0, 0, force}};
+    Moment moment;
+    moment.contacts = contacts;
+    return changed(renderer.draw(scene.frame, moment), none);
+  };
+  const double scale = 302.4 / 0.2725;
+  const Blob strong = with(100), weak = with(30);
+  EXPECT_NEAR(strong.u, 399.5, 1);  // midway between the two
+  EXPECT_NEAR(strong.v, 359.5, 1);
+  // As wide as the force, with an outline of 1 px on both sides and a pixel in which edges fade.
+  EXPECT_NEAR(strong.area / (0.2 * scale), 7.5 + 3, 1.5);
+  EXPECT_NEAR(weak.area / (0.2 * scale), 0.3 * 7.5 + 3, 1.5);
+}
+
+TEST(Renderer, ColoursBallsByWhatItIsTold) {
+  Scene scene = scene_of(paper_mill(), 3);
+  scene.frame.x = {-0.1, 0.1, 0};
+  scene.frame.y = {0, 0, -0.15};
+  for (const Colour colour : {Colour::kResidence, Colour::kForce}) {
+    Style style;
+    style.colour = colour;
+    Renderer renderer(scene.setup, style);
+    renderer.set_scale(0, 8);
+    const auto red_of_second = [&](double value) {
+      const double values[] = {4, value, 4};
+      Moment moment;
+      moment.of_ball = values;
+      return renderer.draw(scene.frame, moment).row(352)[4 * 518];  // off its mark
+    };
+    EXPECT_GT(red_of_second(8), red_of_second(0) + 60);
+    EXPECT_EQ(red_of_second(8), red_of_second(80));  // beyond the scale's end
+  }
+}
+
+// Names of places that lie close make way for one another.
+TEST(Renderer, KeepsLabelsApart) {
+  const Scene scene = scene_of(paper_mill(), 0);
+  Style style;
+  style.overlay.impact = true;
+  Renderer renderer(scene.setup, style);
+  const Image none = renderer.draw(scene.frame, {});
+  ChargeMotion motion;
+  motion.impact_toe_deg.value = 208;
+  renderer.set_mean(motion);
+  const Image impact = renderer.draw(scene.frame, {});
+  const auto covered_by_toe = [&](double toe_deg) {
+    const Image both = renderer.draw(scene.frame, {toe_deg, kNotGiven, {}, {}, {}});
+    EXPECT_GT(changed(both, impact, 30).area, 100);
+    int covered = 0;
+    for (int v = 0; v < none.height; ++v)
+      for (int u = 0; u < none.width; ++u)
+        covered += difference(impact, none, v, u) > 30 && difference(both, impact, v, u) > 30;
+    return covered;
+  };
+  for (const double toe_deg : {204, 206, 210, 213}) EXPECT_EQ(covered_by_toe(toe_deg), 0) << toe_deg;
+}
+
 TEST(Renderer, RefusesPicturesThatNoFilmCanHold) {
   const Scene scene = scene_of(paper_mill(), 1);
   Style odd;
