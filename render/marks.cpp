@@ -31,6 +31,10 @@ void draw_plate(Canvas& canvas, const Box& box) {
                           with_alpha(canvas.theme.ground, 0.72));
 }
 
+TextStyle key_style(const Canvas& canvas) { return {canvas.letter(12), canvas.theme.quiet}; }
+double key_line(const Canvas& canvas) { return std::max(canvas.px(19), 1.35 * key_style(canvas).size); }
+double key_indent(const Canvas& canvas) { return canvas.px(24 + 8); }  // the line's sample, and a gap
+
 bool overlap(const Box& a, const Box& b, double gap) {
   return a.left < b.right + gap && b.left < a.right + gap && a.top < b.bottom + gap && b.top < a.bottom + gap;
 }
@@ -92,9 +96,9 @@ bool draw_pointer(Canvas& canvas, const MillShape& shape, const RimMark& mark) {
 
 }  // namespace
 
-void draw_rim_marks(Canvas& canvas, const MillShape& shape, std::span<const RimMark> marks) {
+void draw_rim_marks(Canvas& canvas, const MillShape& shape, std::span<const RimMark> marks, const Box& kept_free) {
   constexpr double kStep = 1, kFarthest = 30;  // by which a label makes way [degrees]
-  std::vector<Box> taken;
+  std::vector<Box> taken{kept_free};
   for (const RimMark& mark : marks) {
     if (std::isnan(mark.angle_deg) || !draw_pointer(canvas, shape, mark)) continue;
     const auto free_at = [&](double at_deg) {
@@ -181,37 +185,35 @@ void draw_scale_bar(Canvas& canvas, const Vec2& left_end, double shell_radius, d
   canvas.text.add(fmt::format("{:g} m/s", speed), left + arrow / 2, above - canvas.px(9), label);
 }
 
-void draw_key(Canvas& canvas, const Vec2& corner, Align side, const Overlay& overlay, const ChainScale& chains,
-              bool is_over_mill) {
-  struct Row {
-    Rgba colour;
-    double width;
-    std::string words;
-  };
-  std::vector<Row> rows;
-  if (overlay.surface) rows.push_back({canvas.theme.accent, canvas.stroke(2.6), "free surface"});
-  if (overlay.streamlines) rows.push_back({canvas.theme.flow, canvas.stroke(1.6), "mean flow"});
-  if (overlay.occupancy) rows.push_back({canvas.theme.trace, canvas.stroke(1.8), "occupancy"});
+Key make_key(Canvas& canvas, const Vec2& corner, Align side, const Overlay& overlay, const ChainScale& chains) {
+  Key key;
+  if (overlay.surface) key.rows.push_back({canvas.theme.accent, canvas.stroke(2.6), "free surface"});
+  if (overlay.streamlines) key.rows.push_back({canvas.theme.flow, canvas.stroke(1.6), "mean flow"});
+  if (overlay.occupancy) key.rows.push_back({canvas.theme.trace, canvas.stroke(1.8), "occupancy"});
   if (overlay.chains) {
     const double force = round_number_below(chains.force);
-    rows.push_back({canvas.theme.force, chains.width * chains.share_of(force), fmt::format("force {:g} N", force)});
+    key.rows.push_back({canvas.theme.force, chains.width * chains.share_of(force), fmt::format("force {:g} N", force)});
   }
-  if (rows.empty()) return;
+  const TextStyle style = key_style(canvas);
+  double width = 0;
+  for (const Key::Row& row : key.rows)
+    width = std::max(width, key_indent(canvas) + canvas.text.width(row.words, style));
+  const double left = side == Align::kRight ? corner.x() - width : corner.x();
+  const double below = key_line(canvas) * (static_cast<double>(key.rows.size()) - 1);
+  key.box = {left, corner.y() - 0.8 * style.size, left + width, corner.y() + below};
+  return key;
+}
 
-  const TextStyle style{canvas.letter(12), canvas.theme.quiet};
-  const double line = std::max(canvas.px(19), 1.35 * style.size), sample = canvas.px(24), gap = canvas.px(8);
-  double widest = 0;
-  for (const Row& row : rows) widest = std::max(widest, sample + gap + canvas.text.width(row.words, style));
-  const double left = side == Align::kRight ? corner.x() - widest : corner.x();
-  double baseline = corner.y();
-  if (is_over_mill)
-    draw_plate(canvas, {left, baseline - 0.8 * style.size, left + widest,
-                        baseline + line * (static_cast<double>(rows.size()) - 1)});
-  for (const Row& row : rows) {
+void draw_key(Canvas& canvas, const Key& key, bool is_over_mill) {
+  if (key.rows.empty()) return;
+  if (is_over_mill) draw_plate(canvas, key.box);
+  const TextStyle style = key_style(canvas);
+  double baseline = key.box.top + 0.8 * style.size;
+  for (const Key::Row& row : key.rows) {
     const double y = std::round(baseline - 0.36 * style.size);
-    canvas.meshes.line({left, y}, {left + sample, y}, row.width, row.colour);
-    canvas.text.add(row.words, left + sample + gap, baseline, style);
-    baseline += line;
+    canvas.meshes.line({key.box.left, y}, {key.box.left + canvas.px(24), y}, row.width, row.colour);
+    canvas.text.add(row.words, key.box.left + key_indent(canvas), baseline, style);
+    baseline += key_line(canvas);
   }
 }
 

@@ -1,6 +1,8 @@
 #pragma once
 #include <span>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "core/mill_shape.h"
 #include "render/canvas.h"
@@ -17,8 +19,8 @@ struct RimMark {
 };
 
 // Outside the rim, as the literature draws them: a pointer each, with its name and angle. Labels that would cover one
-// another make way along the rim, later ones for earlier ones. Nothing is drawn over the charge.
-void draw_rim_marks(Canvas& canvas, const MillShape& shape, std::span<const RimMark> marks);
+// another or `kept_free` make way along the rim, later ones for earlier ones. Nothing is drawn over the charge.
+void draw_rim_marks(Canvas& canvas, const MillShape& shape, std::span<const RimMark> marks, const Box& kept_free);
 
 // The charge's extent: an arc outside the rim from toe to shoulder; none where one of them is NaN.
 void draw_charge_arc(Canvas& canvas, const MillShape& shape, double toe_deg, double shoulder_deg);
@@ -37,9 +39,19 @@ void draw_gravity(Canvas& canvas);
 void draw_scale_bar(Canvas& canvas, const Vec2& left_end, double shell_radius, double arrow_seconds,
                     bool is_over_mill = false);
 
-// What the lines over the charge stand for: rows down from `corner` [px], on its right (Align::kLeft) or left side; on
-// a plate where they lie over the mill.
-void draw_key(Canvas& canvas, const Vec2& corner, Align side, const Overlay& overlay, const ChainScale& chains,
-              bool is_over_mill = false);
+// What the lines over the charge stand for.
+struct Key {
+  struct Row {
+    Rgba colour;
+    double width;  // of the line [px]
+    std::string words;
+  };
+  std::vector<Row> rows;  // none: there is nothing to say
+  Box box;
+};
+
+// Rows down from `corner` [px], on its right (Align::kLeft) or left side (Align::kRight).
+Key make_key(Canvas& canvas, const Vec2& corner, Align side, const Overlay& overlay, const ChainScale& chains);
+void draw_key(Canvas& canvas, const Key& key, bool is_over_mill);  // there, on a plate
 
 }  // namespace tumble::render

@@ -78,6 +78,7 @@ struct Renderer::Impl {
 
   Box notes() const;  // at whose corners scale and key stand: near the mill, and inside what is shown
   void draw_scale_and_key();
+  Key key();
 
   Box past_of_plot(const Frame& frame) const {
     return {plot->box.left, plot->box.top, std::min(plot->x_of(frame.time), plot->box.right), plot->box.bottom};
@@ -120,10 +121,16 @@ void Renderer::Impl::draw_scale_and_key() {
   const bool is_over_mill = style.view.is_cut(), has_arrows = style.overlay.velocity || style.overlay.mean_velocity;
   const Box box = notes();
   draw_scale_bar(*canvas, {box.left, box.bottom}, shape.radius, has_arrows ? arrow_seconds() : kNotGiven, is_over_mill);
+  draw_key(*canvas, key(), is_over_mill);
+}
+
+Key Renderer::Impl::key() {
+  if (!style.overlay.text) return {};
+  const Box box = notes();
   // The upper left corner of a view that turns says where down is.
   const Align side = style.view.from == View::From::kShell ? Align::kRight : Align::kLeft;
-  draw_key(*canvas, {side == Align::kRight ? box.right : box.left, box.top}, side, style.overlay,
-           chain_scale(*canvas, setup.balls, widest_chain), is_over_mill);
+  return make_key(*canvas, {side == Align::kRight ? box.right : box.left, box.top}, side, style.overlay,
+                  chain_scale(*canvas, setup.balls, widest_chain));
 }
 
 void Renderer::Impl::draw_still(bool pale) {
@@ -164,7 +171,7 @@ void Renderer::Impl::draw_rim(const Moment& moment) {
                            {"toe", toe, theme.accent},
                            {"shoulder", shoulder, theme.accent}};
   draw_charge_arc(*canvas, shape, toe, shoulder);
-  draw_rim_marks(*canvas, shape, marks);
+  draw_rim_marks(*canvas, shape, marks, key().box);
 }
 
 bool shows_mean(const Overlay& o) {
@@ -251,7 +258,8 @@ Drawing Renderer::sketch(const Frame& frame, const Moment& moment) {
     const Box past = my.past_of_plot(frame);
     canvas.clip(past);
     canvas.meshes.rectangle(past.left, past.top, past.right, past.bottom, my.theme.ground);
-    my.draw_still(false);
+    draw_torque_curve(canvas, *my.plot, my.trace, false);
+    canvas.flush();
     canvas.unclip();
   }
   my.draw_moving(frame, moment);

@@ -91,13 +91,14 @@ void draw_torque_curve(Canvas& canvas, const TorquePlot& plot, const TorqueTrace
     const double y = std::round(plot.y_of(tick.value));
     m.line({box.left, y}, {box.right, y}, hair,
            tick.value == 0 ? with_alpha(canvas.theme.quiet, 0.7) : canvas.theme.faint);
-    canvas.text.add(tick.label, box.left - canvas.px(8), y + 0.36 * beside.size, beside);
+    if (pale) canvas.text.add(tick.label, box.left - canvas.px(8), y + 0.36 * beside.size, beside);
   }
   for (const Tick& tick : ticks(plot.start, plot.end, 5)) {
     const double x = std::round(plot.x_of(tick.value));
     m.line({x, box.bottom}, {x, box.bottom + canvas.px(4)}, hair, with_alpha(canvas.theme.quiet, 0.7));
     const double half = canvas.text.width(tick.label, under) / 2;
-    canvas.text.add(tick.label, std::min(x, box.right - half), box.bottom + canvas.px(7) + 0.8 * under.size, under);
+    if (pale)
+      canvas.text.add(tick.label, std::min(x, box.right - half), box.bottom + canvas.px(7) + 0.8 * under.size, under);
   }
 
   // The band: bins of a few samples, and of a pixel at least.

@@ -39,7 +39,8 @@ struct TorquePlot {
 // The plot fills `area` with its labels. Expects a trace that is not empty.
 TorquePlot make_torque_plot(Canvas& canvas, const Box& area, const TorqueTrace& trace);
 
-// Axes, the band from smallest to largest, the running mean, the whole run's mean; pale for what is still to come.
+// Axes, the band from smallest to largest, the running mean, the whole run's mean; pale for what is still to come,
+// with the axes' numbers: the bright one is only ever seen inside the box.
 void draw_torque_curve(Canvas& canvas, const TorquePlot& plot, const TorqueTrace& trace, bool pale);
 void draw_torque_cursor(Canvas& canvas, const TorquePlot& plot, const TorqueTrace& trace, double now);
 

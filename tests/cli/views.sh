@@ -43,6 +43,19 @@ for label in '0.7 of critical speed' '0.9 of critical speed'; do
   grep -q ">$label</text>" both.svg || fail "both.svg does not say \"$label\""
 done
 
+# All that can be drawn, on paper: as pixels, and as shapes with each word once; each run of a sheet has its own mean.
+all=(--at 0.1 --theme light --colour force --overlay all)
+done_by render a.h5 -o all.png "${small[@]}" "${all[@]}" --camera shell
+done_by render a.h5 -o all_mirrored.png "${small[@]}" "${all[@]}" --camera shell --mirror --threads 1
+cmp -s all.png all_mirrored.png && fail "--mirror changes nothing"
+done_by render a.h5 -o all.svg "${all[@]}" --camera shell
+for words in 'free surface' 'mean flow' occupancy CoC departure toe shoulder gravity 'Largest contact force, N'; do
+  [ "$(grep -c ">$words</text>" all.svg)" = 1 ] || fail "all.svg does not say \"$words\" once"
+done
+grep -q 'rect width="1280" height="720" fill="#fff' all.svg || fail "all.svg is not on white paper"
+done_by render a.h5 b.h5 -o both_all.svg "${all[@]}"
+[ "$(grep -c '>CoC</text>' both_all.svg)" = 2 ] || fail "both_all.svg does not have two centres of circulation"
+
 refused 'ball 4000' render a.h5 -o view.png --camera ball:4000 --force
 refused 'ball:N' render a.h5 -o view.png --camera ball --force
 refused '\--at' render a.h5 -o film.mp4 --at 1

@@ -194,30 +194,6 @@ TEST(Renderer, TakesEveryMillThatAConfigCanHold) {
   }
 }
 
-// A mean motion whose parts lie far from one another: a charge that turns about (0.06, -0.1) m.
-ChargeMotion mean_motion() {
-  ChargeMotion m;
-  m.mill_radius = 0.2725;
-  m.field.n = 40;
-  m.field.cell = 2 * m.mill_radius / m.field.n;
-  for (int j = 0; j < m.field.n; ++j) {
-    for (int i = 0; i < m.field.n; ++i) {
-      const double x = (i - 19.5) * m.field.cell - 0.06, y = (j - 19.5) * m.field.cell + 0.1;
-      const bool inside = std::hypot(x, y) < 0.11;
-      m.field.occupancy.push_back(inside ? 0.7 : 0);
-      m.field.vx.push_back(inside ? -8 * y : NAN);
-      m.field.vy.push_back(inside ? 8 * x : NAN);
-    }
-  }
-  for (int k = 0; k <= 20; ++k) m.surface.push_back({-0.1 + 0.01 * k, 0.05});
-  m.head.value = 0.15;
-  m.centre_of_circulation_x.value = 0.06;
-  m.centre_of_circulation_y.value = -0.1;
-  m.departure_deg.value = 70;
-  m.impact_toe_deg.value = 200;
-  return m;
-}
-
 // Each overlay of the mean alone: the middle of what it changes, in the mill [m].
 TEST(Renderer, DrawsTheMeanWhereItLies) {
   struct Case {

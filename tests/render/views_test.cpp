@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <string>
 #include <variant>
 
 #include "core/error.h"
@@ -181,6 +183,136 @@ TEST(Views, ADrawingIsThePictureInShapes) {
     EXPECT_EQ(depth, 0);
     EXPECT_TRUE(has_shoulder || from == View::From::kBall);
   }
+}
+
+// What stands for a place or a height in the mill turns and mirrors with it.
+TEST(Views, TheMeanTurnsWithTheMill) {
+  struct Case {
+    bool Overlay::*shown;
+    double x, y;  // of the middle of what it draws [m]
+    double within;
+  };
+  const Case cases[] = {{&Overlay::streamlines, 0.06, -0.1, 0.02},
+                        {&Overlay::occupancy, 0.06, -0.1, 0.02},
+                        {&Overlay::circulation, 0.06, -0.1, 0.03},
+                        {&Overlay::surface, 0, 0.05, 0.004},
+                        {&Overlay::head, 0, 0.15, 0.05}};  // and its name, on one side
+  for (const double angle : {0.0, 0.8, 4.0}) {
+    for (const bool mirror : {false, true}) {
+      Scene scene = scene_of(paper_mill(), 0);
+      scene.frame.mill_angle = angle;
+      Style style = plain();
+      style.overlay.text = false;
+      style.mirror = mirror;
+      style.view.from = View::From::kShell;
+      const Image bare = picture(scene, style);
+      for (const Case& c : cases) {
+        Style with = style;
+        with.overlay.*c.shown = true;
+        Renderer renderer(scene.setup, with);
+        renderer.set_mean(mean_motion());
+        const Blob blob = changed(renderer.draw(scene.frame, {}), bare);
+        const double x = c.x * std::cos(angle) + c.y * std::sin(angle);
+        const double y = c.y * std::cos(angle) - c.x * std::sin(angle);
+        EXPECT_NEAR((mirror ? -1 : 1) * (blob.u - 639.5) / kScale, x, c.within) << &c - cases << " at " << angle;
+        EXPECT_NEAR((359.5 - blob.v) / kScale, y, c.within) << &c - cases << " at " << angle;
+      }
+    }
+  }
+}
+
+// On the shell its arrows are those against the shell: a charge that turns with it has none.
+TEST(Views, OnTheShellAChargeThatTurnsWithItHasNoMeanVelocity) {
+  const Scene scene = scene_of(paper_mill(), 0);
+  ChargeMotion motion = mean_motion();
+  Field& f = motion.field;
+  for (int j = 0; j < f.n; ++j) {
+    for (int i = 0; i < f.n; ++i) {
+      const auto k = static_cast<std::size_t>(j * f.n + i);
+      f.vx[k] = -scene.setup.mill_speed * (j - 19.5) * f.cell;
+      f.vy[k] = scene.setup.mill_speed * (i - 19.5) * f.cell;
+    }
+  }
+  for (const View::From from : {View::From::kLab, View::From::kShell}) {
+    Style style = plain(), with = plain();
+    style.overlay.text = with.overlay.text = false;
+    style.view.from = with.view.from = from;
+    with.overlay.mean_velocity = true;
+    Renderer renderer(scene.setup, with);
+    renderer.set_mean(motion);
+    const int arrows = largest_difference(renderer.draw(scene.frame, {}), picture(scene, style));
+    EXPECT_TRUE(from == View::From::kLab ? arrows > 100 : arrows == 0) << arrows;
+  }
+}
+
+// Labels at the rim make way for the key, wherever a view puts it and the mark.
+TEST(Views, MarksKeepOffTheKey) {
+  Scene scene = scene_of(paper_mill(), 0);
+  scene.frame.mill_angle = 0;
+  for (const View::From from : {View::From::kLab, View::From::kShell}) {
+    Style style;
+    style.view.from = from;
+    style.overlay.surface = style.overlay.streamlines = style.overlay.occupancy = style.overlay.chains = true;
+    Style keyless = style;
+    keyless.overlay = {};
+    Renderer renderer(scene.setup, style);
+    const Image none = renderer.draw(scene.frame, {});
+    const Image without_key = picture(scene, keyless);
+    for (const double at : {40, 50, 58, 122, 130, 140}) {
+      const Image marked = renderer.draw(scene.frame, {at, kNotGiven, {}, {}, {}});
+      int covered = 0;
+      for (int v = 0; v < none.height; ++v)
+        for (int u = 0; u < none.width; ++u)
+          covered += difference(none, without_key, v, u) > 30 && difference(marked, none, v, u) > 30;
+      EXPECT_EQ(covered, 0) << at;
+    }
+  }
+}
+
+TEST(Views, SideBySideEachMillHasItsOwnMean) {
+  const std::vector<SheetMill> mills(2, three_mills()[0]);
+  Style style = plain();
+  style.overlay.surface = true;
+  Sheet sheet(mills, style);
+  const std::vector<Frame> frames(2, scene_of(paper_mill(), 1).frame);
+  const std::vector<Moment> moments(2);
+  const Image none = sheet.draw(frames, moments, 0);
+  sheet.set_mean(1, mean_motion());
+  const Image one = sheet.draw(frames, moments, 0);
+  EXPECT_GT(largest_difference(one, none), 100);
+  for (int v = 0; v < one.height; ++v) ASSERT_TRUE(std::equal(one.row(v), one.row(v) + 640 * 4, none.row(v)));
+}
+
+// Overlays are lines and words in a drawing, in the theme's own inks.
+TEST(Views, ADrawingHasTheOverlays) {
+  Scene scene = scene_of(paper_mill(), 2);
+  Style style;
+  style.theme = ThemeName::kLight;
+  style.view.from = View::From::kShell;
+  style.overlay = {true, true, false, true, true, true, true, true, true, true, true, true, true, true};
+  Renderer renderer(scene.setup, style);
+  renderer.set_mean(mean_motion());
+  renderer.set_force_scale(100);
+  const ContactForce contacts[] = {{0, 1, 0, 0, 100}};
+  Moment moment{230, 40, {}, {}, {}};
+  moment.contacts = contacts;
+  const Drawing drawing = renderer.sketch(scene.frame, moment);
+  EXPECT_EQ(drawing.ground.r, 255);
+  std::map<std::string, int> words;
+  int outlined = 0, chains = 0;
+  for (const Drawing::Shape& shape : drawing.shapes) {
+    if (const auto* label = std::get_if<Drawing::Label>(&shape)) {
+      ++words[label->text];
+      outlined += label->halo_width > 0;
+    }
+    if (const auto* stroke = std::get_if<Drawing::Stroke>(&shape))
+      chains += stroke->colour.r == 196 && stroke->colour.g == 24 && stroke->width > 7;  // and its sample in the key
+  }
+  for (const char* word : {"CoC", "head 150 mm", "20 %", "60 %", "departure", "impact", "toe", "shoulder", "gravity",
+                           "free surface", "mean flow", "occupancy", "force 100 N"})
+    EXPECT_EQ(words[word], 1) << word;
+  EXPECT_EQ(outlined, 5);  // 20, 40, 60 %, head, CoC
+  EXPECT_EQ(chains, 2);
 }
 
 TEST(Views, EglDrawsWhatOsmesaDraws) {
