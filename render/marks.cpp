@@ -61,20 +61,24 @@ struct Label {
     const Vec2 middle = centre_of(canvas) + (rim_radius(canvas, shape) + reach) * out;
     const double x = std::clamp(middle.x(), picture.left + margin + width / 2, picture.right - margin - width / 2);
     const double y = std::clamp(middle.y(), picture.top + margin + height / 2, picture.bottom - margin - height / 2);
+    is_on_rim = (Vec2(x, y) - middle).norm() > canvas.px(6);
     box = {x - width / 2, y - height / 2, x + width / 2, y + height / 2};
   }
 
   void draw(Canvas& canvas, const char* name) const {
     const double x = (box.left + box.right) / 2;
-    if (has_name) canvas.text.add(name, one_line ? box.left : x - name_width / 2, box.bottom - line, small);
-    canvas.text.add(value, one_line ? box.right - value_width : x - value_width / 2, box.bottom, large);
+    const auto add = [&](std::string_view words, double left, double baseline, const TextStyle& style) {
+      is_on_rim ? add_on_charge(canvas, words, left, baseline, style) : canvas.text.add(words, left, baseline, style);
+    };
+    if (has_name) add(name, one_line ? box.left : x - name_width / 2, box.bottom - line, small);
+    add(value, one_line ? box.right - value_width : x - value_width / 2, box.bottom, large);
   }
 
   TextStyle small, large;
   bool has_name;  // a tiny picture has room for the angle alone
   std::string value;
   double name_width, value_width, line = 0;
-  bool one_line = false;
+  bool one_line = false, is_on_rim = false;  // pushed there by the picture's edge
   Box box;
 };
 
