@@ -15,10 +15,10 @@
 #include "diagnose/fit.h"
 #include "io/calibration_file.h"
 #include "io/config_file.h"
+#include "io/config_keys.h"
 #include "io/experiments_file.h"
 #include "io/output.h"
 #include "io/run_journal.h"
-#include "io/sweep_page.h"
 #include "io/text_file.h"
 
 namespace tumble::cli {

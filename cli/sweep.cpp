@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <array>
+#include <algorithm>
 #include <cmath>
 #include <ctime>
 #include <memory>
@@ -20,6 +20,7 @@
 #include "io/json_number.h"
 #include "io/output.h"
 #include "io/run_journal.h"
+#include "io/sweep_figures.h"
 #include "io/sweep_file.h"
 #include "io/sweep_page.h"
 
@@ -30,7 +31,7 @@ namespace {
 constexpr double kMostRuns = 1e6;
 
 struct Options : CommonOptions {
-  fs::path config, output, csv, page, measured;
+  fs::path config, output, csv, page, figures, measured;
   std::vector<std::string> sets, vary;
   int repeats = 1;
   std::string engine = "local";
@@ -129,10 +130,12 @@ void dry_run(const Plan& plan, const Options& o) {
                              automatic ? "; where spin_up is \"auto\", 30 revolutions of it are assumed" : ""));
 }
 
-constexpr std::array kSummaryNames{"torque_N_m", "mill_power_W", "toe_deg", "shoulder_deg"};
-using PointEstimates = std::array<std::vector<Estimate>, kSummaryNames.size()>;
+std::size_t failures(const Sweep& sweep) {
+  return static_cast<std::size_t>(
+      std::count_if(sweep.runs.begin(), sweep.runs.end(), [](const RunOutcome& run) { return !run.error.empty(); }));
+}
 
-std::string summary(const Sweep& sweep, const PointEstimates& estimates, std::size_t failed) {
+std::string summary(const Sweep& sweep) {
   nlohmann::ordered_json points = nlohmann::ordered_json::array();
   for (std::size_t p = 0; p < sweep.points(); ++p) {
     nlohmann::ordered_json point;
@@ -142,24 +145,25 @@ std::string summary(const Sweep& sweep, const PointEstimates& estimates, std::si
       const double number = io::number_of(value);
       point[sweep.varied[k].key] = std::isnan(number) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(number);
     }
-    for (std::size_t q = 0; q < kSummaryNames.size(); ++q) {
-      const Estimate e = estimates[q].at(p);
-      point[kSummaryNames[q]] = io::json_number(e.value, 9);
-      point[std::string(kSummaryNames[q]) + "_se"] = io::json_number(e.se, 4);
+    for (const std::string name : {"torque_N_m", "mill_power_W", "toe_deg", "shoulder_deg"}) {
+      const Estimate e = io::over_repeats(sweep, p, io::run_quantity(name));
+      point[name] = io::json_number(e.value, 9);
+      point[name + "_se"] = io::json_number(e.se, 4);
     }
     points.push_back(std::move(point));
   }
-  return nlohmann::ordered_json{{"runs", sweep.points() * sweep.repeats}, {"failed", failed}, {"points", points}}.dump(
-             2) +
+  return nlohmann::ordered_json{{"runs", sweep.runs.size()}, {"failed", failures(sweep)}, {"points", points}}.dump(2) +
          "\n";
 }
 
-// From the complete file, whether it was written just now or long ago: the same words.
-std::string summary_of_file(const fs::path& path, const Sweep& sweep) {
-  PointEstimates estimates;
-  for (std::size_t q = 0; q < kSummaryNames.size(); ++q)
-    estimates[q] = io::read_sweep_points(path, io::run_quantity(kSummaryNames[q]));
-  return summary(sweep, estimates, io::read_sweep_failures(path));
+// What shows a finished sweep. `keep`: files that stay as they are.
+void write_tables(const Options& o, const Plan& plan, const Experiments& measured, const std::vector<fs::path>& keep) {
+  const auto wanted = [&](const fs::path& file) {
+    return !file.empty() && std::find(keep.begin(), keep.end(), file) == keep.end();
+  };
+  if (wanted(o.csv)) io::write_sweep_csv(o.csv, plan.sweep);
+  if (wanted(o.page)) io::write_plot_page(o.page, io::sweep_page(plan.sweep, plan.mill, measured));
+  if (!o.figures.empty()) io::write_sweep_figures(o.figures, plan.sweep, plan.mill, measured, keep);
 }
 
 // True where the output is there and is this very sweep.
@@ -168,11 +172,23 @@ bool is_done(const Options& o, const Sweep& sweep) {
   if (!o.resume || o.force || !fs::exists(o.output, error)) return false;
   if (io::read_sweep_definition(o.output) != io::definition_of(sweep))
     throw InputError(o.output.string(), "is a complete sweep of something else; give another output, or --force");
-  for (const fs::path& file : {o.csv, o.page})
-    if (!file.empty() && !fs::exists(file, error))
-      throw InputError(file.string(), "is not there though " + o.output.string() +
-                                          " is complete; only --force, which runs all again, makes it");
   return true;
+}
+
+// From its file: what is asked for and is not there yet is written, nothing is simulated.
+void show_again(const Options& o, Plan& plan, const Experiments& measured, const std::vector<fs::path>& files) {
+  plan.sweep.runs = io::read_sweep_runs(o.output, plan.sweep);
+  std::vector<fs::path> there;
+  std::error_code error;
+  for (const fs::path& file : files) {
+    if (fs::exists(file, error))
+      there.push_back(file);
+    else
+      io::check_output_file(file, false);
+  }
+  write_tables(o, plan, measured, there);
+  say(o,
+      o.output.string() + " is complete" + (there.size() < files.size() ? "; its tables and figures are written" : ""));
 }
 
 void sweep(Options o) {
@@ -187,13 +203,23 @@ void sweep(Options o) {
   if (o.dry_run) return dry_run(plan, o);
   if (o.output.empty()) throw InputError("--output", "is required; give -o SWEEP.h5");
   if (o.page.empty()) o.page = fs::path(o.output).replace_extension(".html");
-  for (const fs::path& output : {o.output, o.csv, o.page})
+  std::vector<fs::path> files{o.page};  // beside the output itself
+  if (!o.csv.empty()) files.push_back(o.csv);
+  if (!o.figures.empty()) {
+    if (io::axis_key(plan.sweep) == plan.sweep.varied.size())
+      throw InputError("--figures", "no varied key has numbers for values; vary one that has, such as mill.speed");
+    io::make_output_folder(o.figures);
+    for (fs::path& file : io::sweep_figure_files(o.figures, plan.sweep)) files.push_back(std::move(file));
+  }
+  std::vector<fs::path> outputs = files;
+  outputs.push_back(o.output);
+  for (const fs::path& output : outputs)
     for (const fs::path& input : {o.config, o.measured})
-      if (!output.empty() && !input.empty()) io::check_not_input(output, input);
-  io::check_apart({o.output, o.csv, o.page});
+      if (!input.empty()) io::check_not_input(output, input);
+  io::check_apart(outputs);
   if (is_done(o, plan.sweep)) {
-    say(o, o.output.string() + " is complete");
-    return o.json ? print(summary_of_file(o.output, plan.sweep)) : void();
+    show_again(o, plan, measured, files);
+    return o.json ? print(summary(plan.sweep)) : void();
   }
 
   fs::path journal_path = o.output;
@@ -201,8 +227,8 @@ void sweep(Options o) {
   std::error_code error;
   const bool interrupted = fs::exists(journal_path, error);
   io::check_output_file(o.output, o.force);
-  for (const fs::path& file : {o.csv, o.page})  // an interrupted sweep may have got to its tables
-    if (!file.empty()) io::check_output_file(file, o.force || (o.resume && interrupted));
+  for (const fs::path& file : files)  // an interrupted sweep may have got to its tables
+    io::check_output_file(file, o.force || (o.resume && interrupted));
   if (interrupted && !o.resume)
     say(o, "note: starting afresh over the interrupted " + journal_path.string() +
                "; --resume would have gone on with it");
@@ -210,7 +236,6 @@ void sweep(Options o) {
   io::RunJournal journal(journal_path, o.resume);
   diagnose::CampaignSink sink;
   ProgressLine line(o, "sweeping", "the finished runs are kept; go on with: tumble sweep ... --resume");
-  std::size_t failed = 0;
   sink.progress = line.callback();
   sink.known = [&](std::size_t run, RunOutcome& outcome) { return journal.find(plan.config_of(run), outcome); };
   sink.finished = [&](std::size_t run, const Config& config, const RunOutcome& outcome) {
@@ -220,16 +245,15 @@ void sweep(Options o) {
   };
   plan.sweep.runs = diagnose::run_campaign(
       plan.runs(), [&](std::size_t run) { return plan.config_of(run); }, sink);
-  for (const RunOutcome& run : plan.sweep.runs) failed += !run.error.empty();
+  const std::size_t failed = failures(plan.sweep);
   if (failed == plan.runs())
     throw WorkError(o.output.string(), "every run failed; the first: " + plan.sweep.runs.front().error);
   if (failed > 0) say(o, fmt::format("note: {} of {} runs failed; column error tells why", failed, plan.runs()));
 
-  if (!o.csv.empty()) io::write_sweep_csv(o.csv, plan.sweep);
-  io::write_plot_page(o.page, io::sweep_page(plan.sweep, plan.mill, measured));
+  write_tables(o, plan, measured, {});
   io::write_sweep(o.output, plan.sweep);  // last: where it stands, the sweep is complete
   journal.remove();
-  if (o.json) print(summary_of_file(o.output, plan.sweep));
+  if (o.json) print(summary(plan.sweep));
 }
 
 }  // namespace
@@ -251,9 +275,12 @@ void add_sweep(CLI::App& app) {
       ->capture_default_str();
   verb->add_option("--csv", o->csv, "Also write a table, a row per run");
   verb->add_option("--page", o->page, "The page with the figures (default: SWEEP.html beside the output)");
+  verb->add_option("--figures", o->figures,
+                   "Folder for torque, power, toe and shoulder as .svg, .pdf and .csv for papers");
   verb->add_option("--measured", o->measured, "EXPERIMENTS.toml, or CSV, whose points the figures show");
   verb->add_option("--engine", o->engine, "local: all cores of this machine")->capture_default_str();
-  verb->add_flag("--resume", o->resume, "Go on with an interrupted sweep");
+  verb->add_flag("--resume", o->resume,
+                 "Go on with an interrupted sweep; of a complete one write the tables and figures that are missing");
   verb->add_flag("--dry-run", o->dry_run, "Only say how many runs, and about how long they take");
   add_common(*verb, *o);
   verb->footer(

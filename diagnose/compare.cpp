@@ -252,7 +252,8 @@ Deviation compare(const ChargeMotion& a, const ChargeMotion& b) {
   d.fields = compare_fields(a, b, same_size);
   d.lines = compare_lines(a, b, same_size);
   if (same_size)
-    for (SampledDifference& spectrum : compare_spectra(a, b)) d.lines.push_back(std::move(spectrum));
+    for (const auto& compare_over_time : {compare_lifter_passages, compare_spectra})
+      for (SampledDifference& line : compare_over_time(a, b)) d.lines.push_back(std::move(line));
   note_conditions(d, a, b, same_size);
   if (same_size) note_slow_film(d, a, b, "A");
   if (same_size) note_slow_film(d, b, a, "B");

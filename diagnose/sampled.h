@@ -27,6 +27,9 @@ std::vector<SampledDifference> compare_fields(const ChargeMotion& a, const Charg
 // surface through the bed's middle.
 std::vector<SampledDifference> compare_lines(const ChargeMotion& a, const ChargeMotion& b, bool lengths);
 
+// Torque over a lifter's passage, where both have the same number of lifters and samples enough on the way.
+std::vector<SampledDifference> compare_lifter_passages(const ChargeMotion& a, const ChargeMotion& b);
+
 // Power spectra over time of torque and head, in bands; `se` of each from its scatter over stretches of the series.
 std::vector<SampledDifference> compare_spectra(const ChargeMotion& a, const ChargeMotion& b);
 

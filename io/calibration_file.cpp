@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/version.h"
+#include "io/csv_file.h"
 #include "io/json_number.h"
 #include "io/report/html.h"
 #include "io/run_columns.h"
@@ -28,12 +29,6 @@ Json json_of(const PredictionGroup& group) {
 
 double relative_error(const Prediction& p) {
   return p.is_direction ? kNotGiven : p.simulated.value / p.measured.value - 1;
-}
-
-std::string csv_text(const std::string& value) {
-  std::string quoted;
-  for (const char c : value) quoted += c == '"' ? "\"\"" : std::string(1, c);
-  return value.find_first_of(",\"\n\r") == std::string::npos ? value : "\"" + quoted + "\"";
 }
 
 std::string percent(double share) { return std::isfinite(share) ? fmt::format("{:+.1f} %", 100 * share) : "–"; }

@@ -39,6 +39,8 @@ constexpr Words kLines[] = {
      "Height of the surface above the axis, square to the bed; both are seen along the same direction."},
     {"velocity_through_bed", "Velocity through the bed", "m/s",
      "Mean velocity along the bed, towards the shoulder, on the line through the axis and the middle of the bed."},
+    {"torque_over_lifter_passage", "Torque of one slice over a lifter’s passage", "N m",
+     "Mean of all passages at the same place of the lifters, which is the only clock that A and B have in common."},
     {"torque_spectrum", "Torque of one slice, power spectrum", "(N m)² s",
      "Geometric mean over stretches of the run, with its error. z is that of the ratio."},
     {"head_spectrum", "Head of the charge, power spectrum", "m² s",
@@ -55,6 +57,7 @@ const Words* words_of(const std::string& name) {
 }
 
 bool is_spectrum(const SampledDifference& d) { return d.name.ends_with("_spectrum"); }
+bool is_over_time(const SampledDifference& d) { return is_spectrum(d) || d.name == "torque_over_lifter_passage"; }
 bool is_impacts(const SampledDifference& d) { return d.name.starts_with("impacts_"); }
 
 const char* name_of_kind(MotionSource source) {
@@ -219,21 +222,21 @@ std::vector<Plot> distributions(const Comparison& c) {
 }
 
 std::vector<PageSection> plot_sections(const Comparison& c) {
-  PageSection profile{.heading = "Profiles, and how they differ"}, spectra{.heading = "Rhythm"},
+  PageSection profile{.heading = "Profiles, and how they differ"}, rhythm{.heading = "Torque in time, and rhythm"},
       impacts{.heading = "Impacts"};
   profile.paragraphs = {
       "Click a name below a plot to hide or show its line; drag to zoom in, double-click to zoom out."};
-  spectra.paragraphs = {
+  rhythm.paragraphs = {
       "Power spectra show at which rates the charge beats, not where it lies. The scatter of their bands is a little "
       "larger than the errors say, so they do not count in the number."};
   for (const SampledDifference& d : c.deviation->lines)
     for (Plot& plot : plots_of(d, c))
-      (is_spectrum(d) ? spectra : is_impacts(d) ? impacts : profile).plots.push_back(std::move(plot));
+      (is_impacts(d) ? impacts : is_over_time(d) ? rhythm : profile).plots.push_back(std::move(plot));
   PageSection frames{.heading = "Frame by frame, as a crowd"};
   frames.paragraphs = {"How often each value comes. No frame is compared with a frame."};
   frames.plots = distributions(c);
   std::vector<PageSection> all;
-  for (PageSection* section : {&profile, &frames, &spectra, &impacts})
+  for (PageSection* section : {&profile, &frames, &rhythm, &impacts})
     if (!section->plots.empty()) all.push_back(std::move(*section));
   return all;
 }
@@ -456,7 +459,8 @@ std::string comparison_page(const Comparison& c) {
                      {"film_rate", c.film_rate},
                      {"film_slow", c.film_slow}};
   const std::string title = title_of(d) + ": " + file_name(*c.a.motion) + " and " + file_name(*c.b.motion);
-  return filled(compare_html, {{"head", head_html(title, "; media-src data: blob:")},
+  return filled(compare_html, {{"top", std::string(top_html)},
+                               {"head", head_html(title, "; media-src data: blob:")},
                                {"title", escaped(title)},
                                {"lead", escaped(after_verdict(d.sentence))},
                                {"sides", sides_html(c)},

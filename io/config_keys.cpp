@@ -4,6 +4,8 @@
 #include <numeric>
 #include <vector>
 
+#include "core/effects.h"
+
 namespace tumble::io {
 namespace {
 
@@ -162,5 +164,30 @@ std::string nearest_word(const std::string& word, std::span<const std::string> w
 }
 
 void clear_field(const Key& key, Config& config) { std::visit(Clear{config}, key.field); }
+
+double number_at(const Config& config, const std::string& key) {
+  if (key == "mill.speed") return speed_fraction(config.mill);
+  if (key == "mill.speed_rpm") return speed_rpm(config.mill);
+  if (key == "charge.filling") return filling_of(config, class_counts(config));
+  if (key == "charge.count") {
+    double balls = 0;
+    for (const int n : class_counts(config)) balls += n;
+    return balls;
+  }
+  Config copy = config;  // the table's functions take a mutable config
+  if (const Key* k = find_key(key)) {
+    if (const auto* f = std::get_if<double& (*)(Config&)>(&k->field)) return (*f)(copy);
+    if (const auto* f = std::get_if<int& (*)(Config&)>(&k->field)) return (*f)(copy);
+    if (const auto* f = std::get_if<std::optional<int>& (*)(Config&)>(&k->field)) return (*f)(copy).value_or(kNotGiven);
+    if (const auto* f = std::get_if<AutoNumber>(&k->field)) return f->value(copy);
+    return kNotGiven;
+  }
+  const auto dot = key.rfind('.');
+  if (!key.starts_with("effects.") || dot < 8) return kNotGiven;
+  const std::string name = key.substr(8, dot - 8);
+  const Effect* effect = find_effect(name);
+  if (!effect || !find_parameter(*effect, key.substr(dot + 1))) return kNotGiven;
+  return effect_value(config, name, key.substr(dot + 1));
+}
 
 }  // namespace tumble::io

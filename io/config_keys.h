@@ -48,4 +48,8 @@ std::string nearest_word(const std::string& word, std::span<const std::string> w
 // Back to "not given", for a key that another one excludes.
 void clear_field(const Key& key, Config& config);
 
+// The value that a config has for a key of MILL.toml; speed and filling either way that they can be given. NaN where
+// that is no number.
+double number_at(const Config& config, const std::string& key);
+
 }  // namespace tumble::io

@@ -172,4 +172,11 @@ std::vector<double> CsvTable::numbers(const std::string& column, bool may_be_emp
   return out;
 }
 
+std::string csv_text(const std::string& value) {
+  if (value.find_first_of(",\"\r\n") == std::string::npos) return value;
+  std::string quoted = "\"";
+  for (const char c : value) quoted += c == '"' ? "\"\"" : std::string(1, c);
+  return quoted + "\"";
+}
+
 }  // namespace tumble::io

@@ -43,4 +43,7 @@ class CsvTable {
 CsvTable read_csv(const std::filesystem::path& path);
 CsvTable parse_csv(std::string text, const std::string& name);  // `name` stands in messages for the file
 
+// A text as a field to write: in quotes where it has commas, quotes or line ends.
+std::string csv_text(const std::string& value);
+
 }  // namespace tumble::io

@@ -20,6 +20,7 @@ void write_plot_page(const std::filesystem::path& path, const PlotPage& page) {
     for (Json& plot : plots_json(page.sections[i].plots, id)) plots.push_back(std::move(plot));
   }
   write_text(path, filled(plots_html, {{"kind", escaped(page.kind)},
+                                       {"top", std::string(top_html)},
                                        {"head", head_html(page.title)},
                                        {"title", escaped(page.title)},
                                        {"lead", escaped(page.lead)},

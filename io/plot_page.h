@@ -41,6 +41,7 @@ struct Plot {
   bool x_log = false, y_log = false;
   bool y_from_zero = false;     // the axis includes 0 (linear axes only)
   bool x_is_direction = false;  // x in degrees, which may run past 360: named in [0, 360)
+  bool y_is_direction = false;  // y likewise
   bool tall = false;            // takes the page's width and more height; else two share a row where there is room
   std::vector<PlotSeries> series = {};
   std::vector<PlotRule> upright = {}, level = {};

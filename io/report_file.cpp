@@ -283,7 +283,8 @@ void write_run_report(const fs::path& path, const RunReport& r) {
   write_text(
       path,
       filled(run_html,
-             {{"head", head_html(title, "; media-src data: blob: " + film.media_source)},
+             {{"top", std::string(top_html)},
+              {"head", head_html(title, "; media-src data: blob: " + film.media_source)},
               {"title", escaped(title)},
               {"lead", escaped(lead_of(r))},
               {"caveats", caveats_of(r)},

@@ -5,10 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <fstream>
+#include <map>
+#include <sstream>
 
 #include "core/error.h"
 #include "core/version.h"
+#include "io/csv_file.h"
 #include "io/hdf5.h"
 #include "io/output.h"
 
@@ -18,13 +20,6 @@ namespace {
 
 const char* const kWanted = "a sweep, SWEEP.h5";
 constexpr std::size_t kMostErrorText = 1 << 19;  // [bytes]; the CSV has them all
-
-std::string csv_text(const std::string& value) {
-  if (value.find_first_of(",\"\n") == std::string::npos) return value;
-  std::string quoted = "\"";
-  for (const char c : value) quoted += c == '"' ? "\"\"" : std::string(1, c);
-  return quoted + "\"";
-}
 
 void write_numbers(hid_t file, const std::string& path, std::vector<double> values, const std::string& unit) {
   for (double& v : values)
@@ -143,21 +138,37 @@ std::string read_sweep_definition(const fs::path& path) {
   return from_sweep(path, [](hid_t file) { return hdf5::read_string(file, "definition"); });
 }
 
-std::vector<Estimate> read_sweep_points(const fs::path& path, const RunQuantity& quantity) {
+std::vector<RunOutcome> read_sweep_runs(const fs::path& path, const Sweep& definition) {
+  const std::size_t count = definition.points() * definition.repeats;
   return from_sweep(path, [&](hid_t file) {
-    const auto value = hdf5::read_array<double>(file, "points/" + quantity.name),
-               se = hdf5::read_array<double>(file, "points/" + quantity.se_name());
-    std::vector<Estimate> points;
-    for (std::size_t p = 0; p < std::min(value.size(), se.size()); ++p) points.push_back({value[p], se[p]});
-    return points;
-  });
-}
-
-std::size_t read_sweep_failures(const fs::path& path) {
-  return from_sweep(path, [](hid_t file) {  // a run that failed has no numbers
-    const auto torque = hdf5::read_array<double>(file, "runs/" + run_quantity("torque_N_m").name);
-    return static_cast<std::size_t>(
-        std::count_if(torque.begin(), torque.end(), [](double t) { return std::isnan(t); }));
+    std::vector<RunOutcome> runs(count);
+    const auto read = [&](const std::string& column, const auto& field) {
+      const auto values = hdf5::read_array<double>(file, "runs/" + column, count);
+      if (values.size() != count) throw hdf5::Failure(column + " is too short");
+      for (std::size_t i = 0; i < count; ++i) field(runs[i]) = values[i];
+    };
+    for (std::size_t q = 0; q < kMotionQuantities.size(); ++q) {
+      const std::string name = kMotionQuantities[q].name, se = RunQuantity{name, {}, false, {}}.se_name();
+      read(name, [q](RunOutcome& run) -> double& { return run.motion[q].value; });
+      if (hdf5::exists(file, "runs/" + se)) read(se, [q](RunOutcome& run) -> double& { return run.motion[q].se; });
+    }
+    read("power_W", [](RunOutcome& run) -> double& { return run.power.value; });
+    read("power_se_W", [](RunOutcome& run) -> double& { return run.power.se; });
+    read("slices", [](RunOutcome& run) -> double& { return run.slices; });
+    read("energy_error", [](RunOutcome& run) -> double& { return run.energy_error; });
+    read("locked_balls", [](RunOutcome& run) -> double& { return run.locked_balls; });
+    read("spin_up_revolutions", [](RunOutcome& run) -> double& { return run.spin_up_revolutions; });
+    std::vector<double> steady(count);
+    read("steady", [&](RunOutcome& run) -> double& { return steady[static_cast<std::size_t>(&run - runs.data())]; });
+    std::istringstream errors(hdf5::read_string(file, "errors"));
+    std::map<std::size_t, std::string> why;
+    std::string word, text;
+    for (std::size_t i = 0; errors >> word >> i && std::getline(errors.ignore(2), text);) why[i] = text;
+    for (std::size_t i = 0; i < count; ++i) {
+      if (std::isnan(steady[i])) runs[i].error = why.contains(i) ? why[i] : "failed; why is not kept";
+      runs[i].steady = steady[i] == 1;
+    }
+    return runs;
   });
 }
 

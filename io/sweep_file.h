@@ -19,9 +19,9 @@ void write_sweep_csv(const std::filesystem::path& path, const Sweep& sweep);
 std::string definition_of(const Sweep& sweep);
 std::string read_sweep_definition(const std::filesystem::path& path);
 
-// What a complete sweep came to, read back: a quantity at every point, and how many of its runs failed.
-std::vector<Estimate> read_sweep_points(const std::filesystem::path& path, const RunQuantity& quantity);
-std::size_t read_sweep_failures(const std::filesystem::path& path);
+// The runs of a complete sweep, read back, without the standard errors of speed and filling, which no table has. Throws
+// InputError where the file does not hold the sweep's runs.
+std::vector<RunOutcome> read_sweep_runs(const std::filesystem::path& path, const Sweep& definition);
 
 // A quantity at a point: its repeats that did not fail, and their mean with the standard error of that mean.
 std::vector<Estimate> at_point(const Sweep& sweep, std::size_t point, const RunQuantity& quantity);

@@ -10,8 +10,4 @@ namespace tumble::io {
 // each combination of the others, with what was measured where it is at one of the key's values or between them.
 PlotPage sweep_page(const Sweep& sweep, const Config& mill, const Experiments& measured);
 
-// The value that a config has for a key of MILL.toml; speed and filling either way that they can be given. NaN where
-// that is no number.
-double number_at(const Config& config, const std::string& key);
-
 }  // namespace tumble::io

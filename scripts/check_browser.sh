@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # Opens a report in headless Chromium, as a reader would from disk: the film must play (a duration, a decoded frame that
 # is not blank), the plots must be drawn and the console must stay silent.
-#   scripts/check_browser.sh [FOLDER of `tumble run` [SCREENSHOT.png [WIDTH]]]    default: a short run of the paper's mill
+# Then that page, a sweep's and one of an experiment are looked over: three widths, dark and light, keys, paper.
+#   scripts/check_browser.sh [FOLDER of `tumble run` [FOLDER for pictures]]    default: a short run of the paper's mill
 set -euo pipefail
 cd "$(dirname "$0")/.."
 . scripts/browser.sh
@@ -14,7 +15,9 @@ else
     --set run.spin_up=0.5 --set run.revolutions=1
 fi
 
-open_browser "${3:-1280}"
+pictures=${2:-}
+if [ -n "$pictures" ]; then mkdir -p "$pictures"; fi
+open_browser
 
 # What the first video of the page shows in the middle of its length, decoded.
 look='const done = arguments[0], v = document.querySelector("video"); v.muted = true;
@@ -32,8 +35,16 @@ see() { run_async "$look"; }
 visit "file://$folder/report.html"
 expect report.html "$(see)" '.duration > 0 and .spread > 10 and .plots > 0'
 expect "report.html's console" "$(console)" 'length == 0'
-if [ $# -ge 2 ]; then screenshot "$2"; fi
 
 echo "<video src='file://$folder/film.mp4'></video>" >"$work/film.html"
 visit "file://$work/film.html"
 expect film.mp4 "$(see)" '.duration > 0 and .spread > 10'
+
+tumble=build/release/cli/tumble
+"$tumble" sweep examples/slice_mill_55cm.toml --vary mill.speed=0.6:0.9:0.1 --repeat 2 --quiet -o "$work/sweep.h5" \
+  --set run.spin_up=0.2 --set run.revolutions=0.5 --set run.frames_per_second=50
+"$tumble" parameters drop examples/experiments/drop.csv -o "$work/drop.html" --quiet >/dev/null
+look_over "file://$folder/report.html" run "$pictures"
+look_over "file://$work/sweep.html" sweep "$pictures"
+look_over "file://$work/drop.html" drop "$pictures"
+echo "the pages are as they should be"

@@ -19,6 +19,7 @@ else
   "$tumble" compare "$work/0.1.h5" "$work/0.3.h5" -o "$folder" --quiet
 fi
 pictures=${2:-}
+if [ -n "$pictures" ]; then mkdir -p "$pictures"; fi
 picture() { if [ -n "$pictures" ]; then screenshot "$pictures/$1.png"; fi; }
 page=file://$folder/report.html
 all_shown='return { lines: document.querySelectorAll("#map .layer-shade rect").length,
@@ -30,14 +31,11 @@ for size in "400 900" "1280 1600" "2500 1400"; do
   # shellcheck disable=SC2086
   open_browser $size
   visit "$page"
-  # Chromium's window is never narrower than 500: the page is looked at through a frame of its own.
-  call POST "$session/goog/cdp/execute" "$(jq -n --argjson w "${size% *}" --argjson h "${size#* }" '{ cmd: "Emulation.setDeviceMetricsOverride",
-    params: { width: $w, height: $h, deviceScaleFactor: 1, mobile: false } }')" >/dev/null
-  sleep 0.5
+  # shellcheck disable=SC2086
+  layout $size
   expect "the page at ${size% *} px" "$(run "$all_shown")" '.lines > 100 and .plots > 6 and .rows > 10 and .wider <= 0 and .parts == 2'
-  picture "page_${size% *}"
-  expect "the console at ${size% *} px" "$(console)" 'length == 0'
 done
+look_over "$page" compare "$pictures"
 
 open_browser 1280 1400
 visit "$page"
@@ -51,6 +49,7 @@ click '#map-of option:nth-child(2)'
 expect "another map" "$(jq -n --argjson a "$before" --argjson b "$(run "$reading")" '{ changed: ($a != $b) }')" '.changed'
 click '#map-z'
 expect "the map in standard errors" "$(run 'return { text: document.querySelector("#map .scale").textContent }')" '.text | test("se")'
+expect "velocities as arrows" "$(run 'return { arrows: document.querySelector("#map > .arrows").getAttribute("d").length }')" '.arrows > 1000'
 hidden='const of = s => [...document.querySelectorAll(s)].filter(e => getComputedStyle(e).display == "none").length;
   return { arrows: of(".pictures .arrows"), path: of("#map .path") }'
 expect "layers at first" "$(run "$hidden")" '.arrows == 0 and .path > 0'

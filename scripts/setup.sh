@@ -6,6 +6,7 @@ set -euo pipefail
 
 packages=(g++ cmake ninja-build pkg-config
   libeigen3-dev libtbb-dev libhdf5-dev libosmesa6-dev libfreetype-dev fonts-dejavu-core libpng-dev
+  libcairo2-dev fonts-liberation2
   libopencv-core-dev libopencv-imgproc-dev libopencv-imgcodecs-dev libopencv-videoio-dev
   libavcodec-dev libavformat-dev libavutil-dev
   libcli11-dev libtomlplusplus-dev nlohmann-json3-dev libfmt-dev libnlopt-dev libxsimd-dev libdnnl-dev)

@@ -33,6 +33,36 @@
           class: `${level ? "level" : "mark"} layer-mark ${of}`, d: ray(deg, level ? 1.01 : data.tip * 0.86, level ? 1.05 : 1.08) })));
     });
   };
+  // B − A of the velocity as arrows, means over blocks of cells; what they stand for goes beside the scale.
+  const velocityArrows = bar => {
+    const vx = fields.velocity_x, vy = fields.velocity_y, block = Math.max(1, Math.round(n / 20)), cell = 2 / n, arrows = [];
+    for (let row = 0; row + block <= n; row += block)
+      for (let column = 0; column + block <= n; column += block) {
+        let x = 0, y = 0, known = 0;
+        for (let k = 0; k < block * block; ++k) {
+          const i = (row + Math.floor(k / block)) * n + column + k % block;
+          if (vx.z[i] == null || vy.z[i] == null) continue;
+          x += vx.d[i];
+          y += vy.d[i];
+          ++known;
+        }
+        if (2 * known > block * block) arrows.push([(column + block / 2) * cell - 1, (row + block / 2) * cell - 1, x / known, y / known]);
+      }
+    const sizes = arrows.map(a => Math.hypot(a[2], a[3])).sort((a, b) => a - b), long = sizes[Math.floor(sizes.length * 0.97)];
+    if (!long) return;
+    let d = "";
+    for (const [x, y, dx, dy] of arrows) {
+      const by = Math.min(1.25 * block * cell / long, 2 * block * cell / Math.hypot(dx, dy));  // a few far ones do not cross the mill
+      const [u, v] = [dx * by, dy * by], [tx, ty] = [x + u / 2, y + v / 2];
+      if (Math.hypot(u, v) < 0.2 * block * cell) continue;
+      d += polyline([[x - u / 2, y - v / 2], [tx, ty]]) +
+        polyline([[tx - 0.3 * u - 0.18 * v, ty - 0.3 * v + 0.18 * u], [tx, ty], [tx - 0.3 * u + 0.18 * v, ty - 0.3 * v - 0.18 * u]]);
+    }
+    map.append(svg("path", { class: "arrows", d }));
+    const length = 1.25 * block * cell * R;
+    bar.append(svg("path", { class: "arrows", d: `M0 46h${length.toFixed(2)}m-3 -1.8l3 1.8l-3 1.8` }),
+      svg("text", { x: 0, y: 55 }, `${Number(long.toPrecision(2))} m/s`));
+  };
   const drawMap = () => {
     if (!names.length) return;
     const name = get("map-of").value, in_errors = get("map-z").checked, f = fields[name];
@@ -60,11 +90,12 @@
     dial(map);
     for (const [k, side] of data.sides.entries())
       for (const path of side.paths) map.append(svg("path", { class: `path layer-path ${k ? "found" : "truth"}`, d: polyline(path.points) }));
-    const bar = svg("g", { class: "scale", transform: "translate(118 60)" });
+    const bar = svg("g", { class: "scale", transform: "translate(118 46)" });
     [[-1, "less"], [-0.5, "less"], [0, "less"], [0.5, "more"], [1, "more"]].forEach(([v, of], i) => {
       bar.append(svg("rect", { x: 0, y: 34 - 10 * i - 10, width: 8, height: 10, class: of, "fill-opacity": (0.9 * Math.abs(v)).toFixed(2) }));
       if (i % 2 == 0) bar.append(svg("text", { x: 11, y: 34 - 10 * i - 2.5 }, minus(v == 0 ? "0" : String(Number((v * top).toPrecision(2)))) + (in_errors && v ? " se" : "")));
     });
+    if (name != "occupancy" && fields.velocity_x && fields.velocity_y) velocityArrows(bar);
     map.append(bar, cursor);
     applyLayers();
   };

@@ -4,8 +4,8 @@
 // Files that the build puts into the program (embed.cmake).
 namespace tumble::io::report {
 
-extern const std::string_view head_html_page;  // of all pages
-extern const std::string_view run_html;        // pages with {{places}} to fill
+extern const std::string_view head_html_page, top_html, page_js;  // of all pages
+extern const std::string_view run_html;                           // pages with {{places}} to fill
 extern const std::string_view plots_html;
 extern const std::string_view compare_html;
 extern const std::string_view compare_js;

@@ -98,6 +98,7 @@ Json plots_json(const std::vector<Plot>& plots, const std::string& id) {
                    {"x_log", p.x_log},
                    {"y_log", p.y_log},
                    {"x_direction", p.x_is_direction},
+                   {"y_direction", p.y_is_direction},
                    {"y_from_zero", p.y_from_zero && !p.y_log},
                    {"series", series},
                    {"upright", rules_json(p.upright)},

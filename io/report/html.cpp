@@ -70,6 +70,7 @@ std::string script_json(const Json& json) {
 std::string head_html(const std::string& title, const std::string& media) {
   return filled(head_html_page, {{"title", escaped(title)},
                                  {"media", media},
+                                 {"page_js", std::string(page_js)},
                                  {"uplot_css", std::string(uplot_css)},
                                  {"style", std::string(style_css)}});
 }

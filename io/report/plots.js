@@ -71,14 +71,47 @@ const tumblePlots = (() => {
     });
   };
 
+  // Arrow keys read values, + and - zoom where they read, 0 shows all: what the mouse does.
+  const by_keys = (u, place) => {
+    const x = u.data[0], first = x[0], last = x.at(-1);
+    place.tabIndex = 0;
+    place.setAttribute("role", "application");
+    place.setAttribute("aria-label", (place.getAttribute("aria-label") ?? "Plot") + "; arrow keys read values, plus and minus zoom, 0 shows all");
+    place.addEventListener("blur", () => u.setCursor({ left: -10, top: -10 }));
+    place.addEventListener("keydown", e => {
+      if (e.target != place || e.ctrlKey || e.metaKey || e.altKey) return;
+      const { min, max } = u.scales.x, at = u.cursor.idx;
+      const seen = x.flatMap((v, i) => v >= min && v <= max ? [i] : []);
+      const step = { ArrowRight: 1, ArrowLeft: -1 }[e.key];
+      if (step && seen.length) {
+        const next = at == null || u.cursor.left < 0 ? seen[step > 0 ? 0 : seen.length - 1]
+          : Math.min(Math.max(at + step * (e.shiftKey ? 10 : 1), seen[0]), seen.at(-1));
+        u.setCursor({ left: u.valToPos(x[next], "x"), top: 1 });
+      } else if (e.key == "+" || e.key == "-") {
+        const middle = at == null || u.cursor.left < 0 ? (min + max) / 2 : x[at], by = e.key == "+" ? 0.5 : 2;
+        const low = Math.max(first, middle - (middle - min) * by), high = Math.min(last, middle + (max - middle) * by);
+        if (high > low) u.setScale("x", { min: low, max: high });
+      } else if (e.key == "0") {
+        u.setScale("x", { min: first, max: last });
+      } else {
+        return;
+      }
+      e.preventDefault();
+    });
+  };
+
   const plot = (id, options, columns) => {
     const place = document.getElementById(id);
     if (!place || !columns[0].length) return null;
-    const size = () => ({ width: Math.max(place.clientWidth, 200), height: place.classList.contains("tall") ? 300 : 230 });
+    const tall = place.classList.contains("tall"), between = (low, v, high) => Math.round(Math.min(Math.max(v, low), high));
+    const size = () => {
+      const width = Math.max(place.clientWidth, 200);
+      return { width, height: tall ? between(300, 0.26 * width, 460) : between(240, 0.44 * width, 400) };
+    };
     const u = new uPlot(Object.assign({ cursor: { y: false, points: { size: 6 } } }, size(), options), columns, place);
     new ResizeObserver(() => u.setSize(size())).observe(place);
     // On paper a plot keeps the size of its letters and takes the page's width.
-    addEventListener("beforeprint", () => u.setSize({ width: place.closest(".pair") ? 330 : 680, height: size().height }));
+    addEventListener("beforeprint", () => u.setSize(place.closest(".pair") ? { width: 320, height: 220 } : { width: 660, height: 280 }));
     addEventListener("afterprint", () => u.setSize(size()));
     // Names in the legend hide and show their line by click; so that keys do it too:
     for (const name of [...u.root.querySelectorAll(".u-legend .u-series th")].slice(1)) {
@@ -90,12 +123,14 @@ const tumblePlots = (() => {
         name.click();
       });
     }
+    by_keys(u, place);
     plots.push(u);
     return u;
   };
 
   const redraw = () => plots.forEach(u => u.redraw(false));
-  for (const query of ["(prefers-color-scheme: dark)", "print"]) matchMedia(query).addEventListener("change", redraw);
+  addEventListener("themechange", redraw);
+  matchMedia("print").addEventListener("change", redraw);
 
   // A number as a reader writes it, of at most n digits: 0.25, 1200, 4.5×10⁵.
   const in_words = (v, n) => {
@@ -192,7 +227,7 @@ const tumblePlots = (() => {
   // Over many decades powers of ten alone, over few also steps between them, within half a decade round steps.
   const log_ticks = (u, index, low, high) => {
     const decades = Math.log10(high / low), first = Math.floor(Math.log10(low)), out = [];
-    const room = index == 0 ? u.over.clientWidth / 55 : u.over.clientHeight / 22;
+    const room = index == 0 ? (u.width - 70) / 55 : (u.height - 70) / 22;  // the frame's own size is still to come
     if (decades < 0.6) {
       const rough = (high - low) / 5, size = 10 ** Math.floor(Math.log10(rough));
       const step = [1, 2, 5, 10].find(k => k * size >= rough) * size;
@@ -236,17 +271,19 @@ const tumblePlots = (() => {
     };
     const columns = aligned(spec.series), first = columns[0][0], last = columns[0].at(-1);
     const value = (u, v) => v == null ? "–" : in_words(v, 5);
+    const directed = (u, v) => value(u, v == null ? v : degree(v));
+    const read = spec.y_direction ? directed : value;
     return plot(spec.id, {
       scales: {
         x: { time: false, distr: spec.x_log ? 3 : 1, range: (u, low, high) => window(low, high) },
         y: { distr: spec.y_log ? 3 : 1, range: u => range_of(spec.y_log, heights(u)) },
       },
-      axes: [axis(spec.x_label, Object.assign(spec.x_direction ? round : ticks(spec.x_log), { space: 60 })), axis(spec.y_label, Object.assign(ticks(spec.y_log), { size: wide }))],
+      axes: [axis(spec.x_label, Object.assign(spec.x_direction ? round : ticks(spec.x_log), { space: 60 })), axis(spec.y_label, Object.assign(spec.y_direction ? round : ticks(spec.y_log), { size: wide }))],
       legend: { markers: { stroke: (u, i) => `var(--${palette[spec.series[i - 1].colour % palette.length]})`, fill: () => "transparent" } },
       cursor: { y: false, points: { size: 6 }, dataIdx: nearest },
-      series: [{ label: spec.x_label, value: spec.x_direction ? (u, v) => value(u, v == null ? v : degree(v)) : value }, ...spec.series.map((s, k) => s.mark == "points"
-        ? line(s.label, stroke[k], { value, width: 0, paths: () => null, points: { show: true, size: 7, width: 1.6, stroke: stroke[k], fill: colour("paper") } })
-        : line(s.label, stroke[k], { value, spanGaps: false, dash: s.dashed ? [6, 4] : [], ...(s.mark == "steps" ? { paths: uPlot.paths.stepped({ align: 1 }) } : {}) }))],
+      series: [{ label: spec.x_label, value: spec.x_direction ? directed : value }, ...spec.series.map((s, k) => s.mark == "points"
+        ? line(s.label, stroke[k], { value: read, width: 0, paths: () => null, points: { show: true, size: 7, width: 1.6, stroke: stroke[k], fill: colour("paper") } })
+        : line(s.label, stroke[k], { value: read, spanGaps: false, dash: s.dashed ? [6, 4] : [], ...(s.mark == "steps" ? { paths: uPlot.paths.stepped({ align: 1 }) } : {}) }))],
       hooks: {
         drawClear: [...spec.upright.map(r => upright_band(r.low, r.high, soft)),
                     ...spec.level.map(r => band(r.low ?? r.at, r.high ?? r.at, soft)),

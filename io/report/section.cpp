@@ -30,7 +30,8 @@ std::string table_html(const PageTable& table) {
            : i == 0 ? fmt::format("<th scope=\"row\"{}>{}</th>", of, escaped(text))
                     : fmt::format("<td{}>{}</td>", of, escaped(text));
   };
-  std::string out = "<div class=\"scroll\"><table class=\"numbers plain\">\n";
+  std::string out =
+      "<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"Table\"><table class=\"numbers plain\">\n";
   if (!table.title.empty()) out += "<caption>" + escaped(table.title) + "</caption>\n";
   out += "<thead><tr>";
   for (std::size_t i = 0; i < table.header.size(); ++i) out += cell(i, table.header[i], true);

@@ -30,6 +30,23 @@ for end in h5 csv html; do same a.$end b.$end; done
 "$tumble" "${sweep[@]}" --force -o b.h5 --csv b.csv --json >again.json || fail "the sweep by force"
 same b.json again.json
 grep -q '"mill.speed": 0.6' b.json || fail "the summary holds no points: $(cat b.json)"
+# Figures of a complete sweep: nothing is run again, what is there stays, what is missing comes with the same bytes.
+"$tumble" "${sweep[@]}" --resume -o b.h5 --figures fig || fail "figures of a complete sweep"
+[ "$(ls fig | tr '\n' ' ')" = 'power.csv power.pdf power.svg toe_shoulder.csv toe_shoulder.pdf toe_shoulder.svg torque.csv torque.pdf torque.svg ' ] ||
+  fail "the figures: $(ls fig)"
+[ "$(wc -l <fig/torque.csv)" -eq 6 ] || fail "5 speeds are 5 points: $(cat fig/torque.csv)"
+cp -r fig first
+rm fig/torque.pdf fig/power.svg
+echo mine >fig/power.csv
+rm b.csv b.html
+"$tumble" "${sweep[@]}" --resume -o b.h5 --csv b.csv --figures fig || fail "figures once more"
+[ "$(cat fig/power.csv)" = mine ] || fail "a figure that was there was replaced"
+for file in torque.pdf power.svg; do same first/$file fig/$file; done
+for end in csv html; do same a.$end b.$end; done
+"$tumble" "${sweep[@]}" -o d.h5 --figures third --threads 2 || fail "a sweep with figures"
+diff -r first third >/dev/null || fail "figures differ with the number of threads, or from those of a file"
+refused 'third/power.svg: exists' sweep "$mill" --vary mill.speed=0.6,0.7 "${short[@]}" -o c.h5 --figures third
+refused 'figures: no varied key has numbers' sweep "$mill" --vary mill.lifters.profile=rectangle,none -o c.h5 --figures fig
 refused 'of something else' sweep "$mill" --vary mill.speed=0.6,0.7 "${short[@]}" --resume -o b.h5
 refused exists sweep "$mill" --vary mill.speed=0.6,0.7 "${short[@]}" -o b.h5
 refused 'more than a million' sweep "$mill" --vary mill.speed=0.1:1.1:0.0001 --vary contact.friction=0.1:0.9:0.0005 -o c.h5

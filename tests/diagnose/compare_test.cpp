@@ -234,5 +234,41 @@ TEST(Compare, SpectraAreDensitiesWhateverTheRateAndFindATone) {
   }
 }
 
+// Two revolutions a second, 18 lifters: a torque that beats with them, its strength drawn anew for each revolution, and
+// sampled as a run is, each frame's mean since the one before.
+ChargeMotion passing(unsigned seed, double rate, double lag_deg) {
+  std::mt19937 random(seed);
+  std::normal_distribution<double> chance(0, 0.3);
+  ChargeMotion m = mill(seed);
+  double weather = 0;
+  for (int i = 0; i < 20 * rate; ++i) {
+    const double time = i / rate, turned = 720 * time, middle = turned - 360 / rate;
+    if (i % static_cast<int>(rate / 2) == 0) weather = chance(random);
+    m.profile.push_back({.frame = i, .time = time, .mill_angle_deg = std::fmod(turned, 360)});
+    m.torque_series.push_back({time, 10 + weather + 2 * std::cos(18 * (middle - lag_deg) * kPi / 180), 0});
+  }
+  return m;
+}
+
+TEST(Compare, TorqueOverALiftersPassageIsTheSameAtAnyRateAndFindsALag) {
+  const Deviation equal = compare(passing(1, 487, 5), passing(2, 613, 5));
+  const SampledDifference* same = find(equal.lines, "torque_over_lifter_passage");
+  ASSERT_TRUE(same);
+  ASSERT_EQ(same->x.size(), 12u);
+  for (std::size_t i = 0; i < same->x.size(); ++i)
+    EXPECT_NEAR(same->a[i], 10 + 2 * std::cos(18 * (same->x[i] - 5) * kPi / 180), 0.25) << same->x[i];
+  EXPECT_EQ(same->compared, 12);
+  EXPECT_EQ(same->beyond_chance, 0);
+
+  const Deviation apart = compare(passing(1, 487, 5), passing(2, 613, 10));
+  EXPECT_GT(find(apart.lines, "torque_over_lifter_passage")->beyond_chance, 6);
+
+  ChargeMotion fewer = passing(2, 613, 5);
+  fewer.lifter_count = 12;
+  EXPECT_FALSE(find(compare(passing(1, 487, 5), fewer).lines, "torque_over_lifter_passage"));
+  // Three pictures a passage do not show it.
+  EXPECT_FALSE(find(compare(passing(1, 487, 5), passing(2, 110, 5)).lines, "torque_over_lifter_passage"));
+}
+
 }  // namespace
 }  // namespace tumble::diagnose
