@@ -23,8 +23,6 @@ Eigen::Vector2d undistorted(const MillCamera& camera, const Eigen::Vector2d& see
 
 }  // namespace
 
-Eigen::Matrix3d MillCamera::frontal() { return Eigen::Vector3d(1, -1, -1).asDiagonal(); }
-
 cv::Point2d picture_of(const MillCamera& camera, const Eigen::Vector3d& place) {
   const Eigen::Vector3d p = camera.rotation * place + camera.translation;
   if (!(p.z() > 0)) return {kNotGiven, kNotGiven};

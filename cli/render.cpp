@@ -1,8 +1,10 @@
+#include <cmath>
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "cli/film_beside.h"
 #include "cli/film_theme.h"
 #include "cli/options.h"
 #include "cli/steps.h"
@@ -25,6 +27,8 @@ struct Options : CommonOptions {
   std::uint64_t look_seed = 1;
   double fps = 60;
   FilmPlan plan;
+  BesidePlan beside;
+  bool colour_given = false;
 };
 
 render::Overlay parse_overlay(const std::string& list) {
@@ -74,6 +78,27 @@ void render(Options o) {
     io::check_output_file(o.output, o.force);
   }
   const io::RunReader run(o.run);
+  if (!o.beside.film.empty()) {
+    if (filmed) throw InputError("--theme", "film does not go with --beside; render the film first, then its run beside it");
+    io::check_not_input(o.output, o.beside.film);
+    o.beside.run = o.run;
+    o.beside.picture = o.plan;
+    if (!o.colour_given) o.beside.picture.style.colour = render::Colour::kSteel;
+    const BesideResult done = render_beside(run, o.beside, o.output, pictures, o);
+    if (!o.json) return;
+    nlohmann::ordered_json summary = {{"output", o.output.string()},
+                                      {"frames", done.frames},
+                                      {"frames_per_second", done.frames_per_second},
+                                      {"slow", o.plan.style.slow},
+                                      {"run_from_s", done.run_from},
+                                      {"run_pace", done.pace}};
+    if (!std::isnan(done.only_film)) {
+      summary["only_film"] = done.only_film;
+      summary["only_simulation"] = done.only_run;
+    }
+    print(summary.dump(2) + "\n");
+    return;
+  }
   ChargeMotion truth;
   if (!filmed && (o.plan.style.overlay.toe || o.plan.style.overlay.shoulder)) truth = measure_run(run, o);
   truth.origin = o.run.string();
@@ -106,9 +131,24 @@ void add_render(CLI::App& app) {
       ->capture_default_str();
   verb->add_option("--preset", o->plan.format.preset, "x264 preset, ultrafast to veryslow")->capture_default_str();
   verb->add_option("--crf", o->plan.format.crf, "x264 quality, 0 (lossless) to 51")->capture_default_str();
+  verb->add_option("--beside", o->beside.film,
+                   "A real film, a folder of stills or one, or the MOTION.h5 made of it: the run beside it, in step");
+  verb->add_option("--as", o->beside.view,
+                   "side (two panels), overlay (the run's balls in the film), wipe, or difference (what only one has)")
+      ->capture_default_str();
+  verb->add_option("--wipe-at", o->beside.wipe, "Share of a wipe that shows the film, 0 to 1; not given: it sweeps");
+  verb->add_option("--opacity", o->beside.opacity, "Of the balls in an overlay, 0 (outlines alone) to 1")
+      ->capture_default_str();
+  add_film_input(*verb, o->beside.input);
   add_common(*verb, *o);
-  verb->footer("Example: tumble render run.h5 -o film.mp4 --slow 4 --overlay toe,shoulder,tracks");
-  verb->callback([o] { render(*o); });
+  verb->footer(
+      "Examples: tumble render run.h5 -o film.mp4 --slow 4 --overlay toe,shoulder,tracks\n"
+      "          tumble render run.h5 -o beside.mp4 --beside film.mp4 --as overlay");
+  verb->callback([o, verb] {
+    o->colour_given = verb->count("--colour") > 0;
+    o->beside.rate_given = verb->count("--fps") > 0;
+    render(*o);
+  });
 }
 
 }  // namespace tumble::cli

@@ -22,19 +22,6 @@
 namespace tumble::cli {
 namespace {
 
-// Top of the colour scale: what one ball in a hundred exceeds, so that a single impact does not darken the film.
-double scale_top(const io::RunReader& run, render::Colour colour) {
-  std::vector<double> values;
-  const std::size_t step = std::max<std::size_t>(1, run.frame_count() / 50);
-  for (std::size_t i = 0; i < run.frame_count(); i += step) {
-    const Frame f = run.frame(i);
-    for (std::size_t b = 0; b < f.x.size(); ++b)
-      values.push_back(colour == render::Colour::kSpin ? std::abs(f.spin[b]) : std::hypot(f.vx[b], f.vy[b]));
-  }
-  if (values.empty()) return 1;
-  return std::max(quantile_of(std::move(values), 0.99), 1e-3);
-}
-
 // HDF5's signature: a run file, even one cut short, is to be refused as a run file and not as a film.
 bool looks_like_hdf5(const fs::path& path) {
   std::ifstream file(path, std::ios::binary);
@@ -53,6 +40,18 @@ Marks marks_at(const ChargeMotion& truth, double time, double frames_per_second)
 }
 
 }  // namespace
+
+double scale_top(const io::RunReader& run, render::Colour colour) {
+  std::vector<double> values;
+  const std::size_t step = std::max<std::size_t>(1, run.frame_count() / 50);
+  for (std::size_t i = 0; i < run.frame_count(); i += step) {
+    const Frame f = run.frame(i);
+    for (std::size_t b = 0; b < f.x.size(); ++b)
+      values.push_back(colour == render::Colour::kSpin ? std::abs(f.spin[b]) : std::hypot(f.vx[b], f.vy[b]));
+  }
+  if (values.empty()) return 1;
+  return std::max(quantile_of(std::move(values), 0.99), 1e-3);
+}
 
 ChargeMotion measure_run(const io::RunReader& run, const CommonOptions& options) {
   ProgressLine line(options, "reading the run", "nothing was written");
@@ -145,7 +144,7 @@ ChargeMotion measure(const fs::path& input, const analysis::TracksOptions& film,
     motion = analysis::measure_tracks(io::read_pixel_tracks(input), film);
   } else {
     ProgressLine line(options, "reading the film", "nothing was written");
-    motion = fs::is_directory(input, error) ? analysis::measure_stills(input.string(), film, line.callback())
+    motion = analysis::are_stills(input.string()) ? analysis::measure_stills(input.string(), film, line.callback())
                                             : analysis::measure_film(input.string(), film, line.callback());
   }
   motion.origin = input.string();

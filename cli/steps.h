@@ -19,6 +19,9 @@ namespace fs = std::filesystem;
 // The charge's true motion, from a run file.
 ChargeMotion measure_run(const io::RunReader& run, const CommonOptions& options);
 
+// Top of the colour scale: what one ball in a hundred exceeds, so that a single impact does not darken the film.
+double scale_top(const io::RunReader& run, render::Colour colour);
+
 struct FilmPlan {
   render::Style style;
   io::FilmFormat format;

@@ -54,7 +54,7 @@ TEST_F(FilmPictures, IsCutToTheMillAndMirroredWhereItTurnsClockwise) {
   ASSERT_EQ(cut.width, 100);
   EXPECT_GT(at(cut, 70, 50), 200);  // 60 px right of the middle are 20 here
   EXPECT_LT(at(cut, 30, 50), 50);
-  view_.mirror = true;
+  view_.mirror = view_.clockwise = true;
   const Image mirrored = show({0})[0];
   EXPECT_GT(at(mirrored, 29, 50), 200);
   EXPECT_LT(at(mirrored, 69, 50), 50);
