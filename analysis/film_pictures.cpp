@@ -55,9 +55,9 @@ Map map_of(const PictureView& view, cv::Size film, int enlarged, int edge) {
         at = {0.5 * film.width - 0.5 + half * right, 0.5 * film.height - 0.5 + half * down};
       } else {
         const double half = half_edge(view);
-        at = view.straightened ? picture_of(camera, {half * right, -half * down, -view.depth})
-                               : cv::Point2d(view.camera.centre_u_px + half * right,
-                                             view.camera.centre_v_px + half * down);
+        at = view.straightened
+                 ? picture_of(camera, {half * right, -half * down, -view.depth})
+                 : cv::Point2d(view.camera.centre_u_px + half * right, view.camera.centre_v_px + half * down);
         at = {(at.x + 0.5) * enlarged - 0.5, (at.y + 0.5) * enlarged - 0.5};
       }
       map.u.at<float>(j, i) = static_cast<float>(at.x);
@@ -66,7 +66,7 @@ Map map_of(const PictureView& view, cv::Size film, int enlarged, int edge) {
   return map;
 }
 
-// Cuts the square out of a film's pictures, black where it reaches beyond them.
+// Cuts the square out of a film's pictures, transparent black where it reaches beyond them.
 class Cutter {
  public:
   Cutter(const PictureView& view, cv::Size film, int enlarged) : edge_(view.edge_px) {
@@ -78,10 +78,10 @@ class Cutter {
   }
 
   Image cut(const cv::Mat& picture) const {
-    cv::Mat square, small;
-    cv::remap(picture, square, map_.u, map_.v, cv::INTER_CUBIC, cv::BORDER_CONSTANT);
+    cv::Mat opaque, square, small;
+    cv::cvtColor(picture, opaque, cv::COLOR_BGR2RGBA);
+    cv::remap(opaque, square, map_.u, map_.v, cv::INTER_CUBIC, cv::BORDER_CONSTANT);
     cv::resize(square, small, {edge_, edge_}, 0, 0, cv::INTER_AREA);
-    cv::cvtColor(small, small, cv::COLOR_BGR2RGBA);
     Image image(edge_, edge_);
     for (int row = 0; row < edge_; ++row)
       std::memcpy(image.row(row), small.ptr(row), static_cast<std::size_t>(edge_) * 4);

@@ -26,8 +26,8 @@ struct PictureView {
 };
 
 // Hands out the pictures of `frames` (numbers of the film's or the stills' frames, never falling; one may come several
-// times), as far as they go. `path`: as measured, a film, a folder of stills or one. Throws InputError where it cannot
-// be read.
+// times), as far as they go; transparent where the square reaches beyond them. `path`: as measured, a film, a folder of
+// stills or one. Throws InputError where it cannot be read.
 void show_film(const std::string& path, const PictureView& view, std::span<const int> frames,
                const std::function<void(const Image&)>& use, const Progress& progress = {});
 

@@ -67,15 +67,16 @@ Filmed read_film(const fs::path& path, const RunSetup& setup, FilmInput& input, 
   return film;
 }
 
-struct Shot {
-  int frame = 0;            // of the film
-  std::size_t row = 0;      // of its profile
+struct Taken {
+  int frame = 0;             // of the film
+  std::size_t row = 0;       // of its profile
   double clock = kNotGiven;  // [s]
-  double run_time = 0;      // after the run's first frame [s]
+  double run_time = 0;       // after the run's first frame [s]
 };
 
 struct Timeline {
-  std::vector<Shot> shots;
+  std::vector<Taken> all;    // the film's pictures
+  std::vector<Taken> shots;  // those that are shown
   double rate = kStillRate;  // pictures per second
   double apart = kNotGiven;  // true time between two [s]
   InStep step;
@@ -98,15 +99,18 @@ Timeline timeline_of(const ChargeMotion& film, const ChargeMotion& run, double g
   const double of_film = span_film - line.step.a_from, of_run = (span_run - line.step.b_from) / line.step.pace;
   line.run_ends_first = of_run < of_film - line.apart / second;
   const double until = std::min(of_film, of_run);
+  // The run at the very moment at which a picture was taken.
+  const auto shot_of = [&](std::size_t row) {
+    const double at = std::max(rows[row].time - rows.front().time, line.step.a_from);
+    return Taken{rows[row].frame, row, (at - line.step.a_from) * second, std::min(line.step.b_at(at), span_run)};
+  };
+  for (std::size_t row = 0; row < rows.size(); ++row) line.all.push_back(shot_of(row));
   std::size_t row = 0;
   for (std::size_t k = 0; static_cast<double>(k) * line.apart / second <= until + 1e-9; ++k) {
     const double t = line.step.a_from + static_cast<double>(k) * line.apart / second;
     const auto off = [&](std::size_t i) { return std::abs(rows[i].time - rows.front().time - t); };
     while (row + 1 < rows.size() && off(row + 1) <= off(row)) ++row;
-    // The run at the very moment at which the film's picture was taken.
-    const double at = std::max(rows[row].time - rows.front().time, line.step.a_from);
-    line.shots.push_back(
-        {rows[row].frame, row, (at - line.step.a_from) * second, std::min(line.step.b_at(at), span_run)});
+    line.shots.push_back(shot_of(row));
   }
   return line;
 }
@@ -123,13 +127,19 @@ Timeline timeline_of_stills(const ChargeMotion& stills, const ChargeMotion& run,
     for (int j = 0; j < each; ++j, ++k)
       line.shots.push_back({i, static_cast<std::size_t>(i), kNotGiven,
                             as_pictures ? span * (i + 0.5) / stills.frames : std::fmod(k * line.apart, span)});
+  line.all = line.shots;
   return line;
 }
 
-std::string with_error(const Estimate& e, int digits, const char* unit, double factor = 1) {
+// "−0.2 ± 1.6°"; errors that are nothing at so many digits are left out.
+std::string with_error(const Estimate& e, int digits, const char* unit, bool is_difference = false) {
   if (std::isnan(e.value)) return "–";
-  if (std::isnan(e.se)) return fmt::format("{:.{}f}{}", factor * e.value, digits, unit);
-  return fmt::format("{:.{}f} ± {:.{}f}{}", factor * e.value, digits, factor * e.se, digits, unit);
+  const std::string size = fmt::format("{:.{}f}", std::abs(e.value), digits);
+  const bool zero = size.find_first_not_of("0.") == std::string::npos;
+  const char* sign = zero ? "" : e.value < 0 ? "−" : is_difference ? "+" : "";
+  const double least = 0.5 * std::pow(10, -digits);
+  const std::string error = e.se >= least ? fmt::format(" ± {:.{}f}", e.se, digits) : "";
+  return sign + size + error + unit;
 }
 
 render::BesideWords words_of(const Filmed& film, const ChargeMotion& run) {
@@ -146,16 +156,17 @@ render::BesideWords words_of(const Filmed& film, const ChargeMotion& run) {
     return text;
   };
   const auto file_name = [](const fs::path& p) { return (p.has_filename() ? p : p.parent_path()).filename().string(); };
-  words.film = {file_name(film.file), detail(film.motion)};
-  words.run = {file_name(run.origin), detail(run)};
-  const auto row = [&](const char* name, const Estimate ChargeMotion::*of, int digits, const char* unit,
-                       double factor, bool direction) {
-    const Estimate a = film.motion.*of, b = run.*of;
+  words.film = {film.motion.source == MotionSource::kStills ? "Photograph" : "Film", file_name(film.file),
+                detail(film.motion)};
+  words.run = {"Simulation", file_name(run.origin), detail(run)};
+  const auto row = [&](const char* name, const Estimate ChargeMotion::*of, int digits, const char* unit, double factor,
+                       bool direction) {
+    const auto scaled = [factor](const Estimate& e) { return Estimate{factor * e.value, factor * e.se}; };
+    const Estimate a = scaled(film.motion.*of), b = scaled(run.*of);
     Estimate d{b.value - a.value, std::hypot(a.se, b.se)};
     if (direction) d.value = wrap_180(d.value);
-    std::string difference = with_error(d, digits, unit, factor);
-    if (d.value * factor > 0) difference = "+" + difference;
-    words.table.push_back({name, with_error(a, digits, unit, factor), with_error(b, digits, unit, factor), difference});
+    words.table.push_back(
+        {name, with_error(a, digits, unit), with_error(b, digits, unit), with_error(d, digits, unit, true)});
   };
   row("Speed, rev/min", &ChargeMotion::speed_rpm, 2, "", 1, false);
   row("Toe", &ChargeMotion::toe_deg, 1, "°", 1, true);
@@ -164,22 +175,32 @@ render::BesideWords words_of(const Filmed& film, const ChargeMotion& run) {
   return words;
 }
 
+std::string colour_in_words(render::Colour colour, double top) {
+  if (colour == render::Colour::kSpeed) return fmt::format("speed, from 0 (dark) to {:.2g} m/s (bright)", top);
+  if (colour == render::Colour::kSpin) return fmt::format("spin, from -{0:.2g} (cool) to {0:.2g} rad/s (warm)", top);
+  return "size, from the smallest (dark) to the largest (bright)";
+}
+
 std::vector<std::string> notes_of(const ChargeMotion& film, const ChargeMotion& run, const Timeline& line,
-                                  render::BesideView view, std::size_t passage) {
+                                  render::BesideView view, double passages, std::size_t mean_over) {
   std::vector<std::string> notes;
   if (view == render::BesideView::kDifference)
-    notes.push_back(fmt::format("Running mean over {}: the motion is chaotic, single pictures never match ball by ball.",
-                                film.source == MotionSource::kStills
-                                    ? "all stills so far"
-                                    : fmt::format("one lifter passage ({} pictures)", passage)));
+    notes.push_back(fmt::format(
+        "Running mean over {} ({} pictures): the motion is chaotic, single pictures never match ball by ball.",
+        film.source == MotionSource::kStills ? "all so far"
+        : passages == 1                      ? "one lifter passage"
+                                             : fmt::format("{:g} lifter passages", passages),
+        mean_over));
   if (film.source == MotionSource::kStills)
-    notes.push_back("A still tells neither time nor phase: the run is shown at any time of it.");
+    notes.push_back(
+        "A photograph tells neither time nor phase: the run is shown at a time of its own; lines are mean surfaces.");
   else if (line.step.by_lifters && line.step.by_angle)
     notes.push_back("Begun with the lifters in the same place, kept in step by the angle of the mills.");
   else if (line.step.by_lifters)
-    notes.push_back(fmt::format(
-        "Begun with the lifters in the same place; one clock for both, at different speeds ({:.1f} and {:.1f} rev/min).",
-        film.speed_rpm.value, run.speed_rpm.value));
+    notes.push_back(
+        fmt::format("Begun with the lifters in the same place; one clock for both, at different speeds ({:.1f} and "
+                    "{:.1f} rev/min).",
+                    film.speed_rpm.value, run.speed_rpm.value));
   else
     notes.push_back("One clock for both; the lifters' phase in the film is not known.");
   if (std::isnan(film.frames_per_second) && film.source == MotionSource::kFilm)
@@ -223,6 +244,12 @@ render::ChargeEdge edge_at(const ChargeMotion& m, std::size_t row) {
                                 : render::ChargeEdge{};
 }
 
+std::vector<Eigen::Vector2d> surface_of(const ChargeMotion& m) {
+  std::vector<Eigen::Vector2d> line;
+  for (const SurfacePoint& p : m.surface) line.emplace_back(p.x, p.y);
+  return line;
+}
+
 double mean_of(const std::vector<double>& values) {
   double sum = 0;
   for (const double v : values) sum += v;
@@ -237,6 +264,7 @@ BesideResult render_beside(const io::RunReader& run, BesidePlan plan, const fs::
   if (!std::isnan(plan.wipe) && !(plan.wipe >= 0 && plan.wipe <= 1))
     throw InputError("--wipe-at", "must lie between 0 and 1: the share that shows the film");
   if (!(plan.opacity >= 0 && plan.opacity <= 1)) throw InputError("--opacity", "must lie between 0 and 1");
+  if (!(plan.passages > 0)) throw InputError("--passages", "must be above 0; 1 is one lifter passage");
   if (run.frame_count() < 2) throw InputError("run", "holds no motion; simulate for longer");
   const Filmed film = read_film(plan.film, run.setup(), plan.input, options);
   const bool stills = film.motion.source == MotionSource::kStills;
@@ -250,9 +278,8 @@ BesideResult render_beside(const io::RunReader& run, BesidePlan plan, const fs::
   FilmPlan& picture = plan.picture;
   const double given =
       plan.rate_given ? double(picture.format.fps_numerator) / picture.format.fps_denominator : kNotGiven;
-  const Timeline line = stills
-                            ? timeline_of_stills(film.motion, truth, given, picture.style.slow, as_pictures)
-                            : timeline_of(film.motion, truth, given, picture.style.slow);
+  const Timeline line = stills ? timeline_of_stills(film.motion, truth, given, picture.style.slow, as_pictures)
+                               : timeline_of(film.motion, truth, given, picture.style.slow);
   parse_rate(std::clamp(std::round(1000 * line.rate) / 1000, 1.0, 1000.0), "--fps", picture.format.fps_numerator,
              picture.format.fps_denominator);
 
@@ -266,13 +293,18 @@ BesideResult render_beside(const io::RunReader& run, BesidePlan plan, const fs::
   style.mirror = film.motion.rotation == Rotation::kClockwise;
   style.slow = picture.style.slow;
   style.opacity = plan.opacity;
-  style.passage = stills ? line.shots.size() : static_cast<std::size_t>(std::max(1.0, std::round(passage / line.apart)));
+  const double rate = static_cast<double>(line.all.size() - 1) / (line.all.back().clock - line.all.front().clock);
+  style.mean_over =
+      stills ? line.all.size() : static_cast<std::size_t>(std::max(1.0, std::round(plan.passages * passage * rate)));
+  const double top = scale_top(run, style.colour);
   render::BesideWords words = words_of(film, truth);
-  words.notes = notes_of(film.motion, truth, line, kind, style.passage);
+  words.notes = notes_of(film.motion, truth, line, kind, plan.passages, style.mean_over);
+  if (style.colour != render::Colour::kSteel)
+    words.notes.push_back(fmt::format("The balls' colour is their {}.", colour_in_words(style.colour, top)));
   for (const std::string& note : words.notes) say(options, "note: " + note);
   const double radius = film.motion.mill_radius > 0 ? film.motion.mill_radius : truth.mill_radius;
   render::BesideRenderer renderer(run.setup(), style, words, radius);
-  renderer.set_scale(0, scale_top(run, style.colour));
+  renderer.set_scale(0, top);
 
   analysis::PictureView view;
   view.camera = film.motion.camera;
@@ -288,18 +320,20 @@ BesideResult render_beside(const io::RunReader& run, BesidePlan plan, const fs::
                              return analysis::ball_in_picture(view, x / radius, y / radius, r / radius, kCorners);
                            }});
 
+  if (stills) renderer.set_surfaces(surface_of(film.motion), surface_of(truth));
+
   std::unique_ptr<io::FilmWriter> writer;
   if (!as_pictures) writer = std::make_unique<io::FilmWriter>(output.string(), picture.format);
-  RunPlayer player(run);
+  RunPlayer player(run), at_run(run);
   FoundBalls found(film.motion.tracks);
   std::vector<int> frames;
-  for (const Shot& shot : line.shots) frames.push_back(shot.frame);
+  for (const Taken& shot : line.shots) frames.push_back(shot.frame);
   ProgressLine progress(options, "rendering", "nothing was written under " + output.string());
-  std::size_t index = 0;
+  std::size_t index = 0, compared = 0;
   analysis::show_film(
       film.file.string(), view, frames,
       [&](const Image& image) {
-        const Shot& shot = line.shots[index];
+        const Taken& shot = line.shots[index];
         const Frame frame = player.at(run.time().front() + shot.run_time);
         render::BesideMoment moment;
         moment.film = &image;
@@ -317,7 +351,10 @@ BesideResult render_beside(const io::RunReader& run, BesidePlan plan, const fs::
         }
         const double sweep = 2 * kPi * static_cast<double>(index) / line.rate / kSweep;
         moment.wipe = std::isnan(plan.wipe) ? 0.5 + 0.4 * std::sin(sweep) : plan.wipe;
-        if (difference) moment.balls = &found.of(shot.frame);
+        for (; difference && compared < line.all.size() && line.all[compared].frame <= shot.frame; ++compared) {
+          const Taken& taken = line.all[compared];
+          renderer.compare(found.of(taken.frame), at_run.at(run.time().front() + taken.run_time));
+        }
         const Image& drawn = renderer.draw(moment);
         if (writer)
           writer->write(drawn);

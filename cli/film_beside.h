@@ -14,15 +14,16 @@ struct BesidePlan {
   FilmInput input;
   std::string view = "side";
   double wipe = kNotGiven;  // share of the square that shows the film; NaN: the line sweeps
-  double opacity = 0.25;
+  double opacity = 0.12;
+  double passages = 1;      // of lifters, that a difference is a running mean over
   bool rate_given = false;  // film.format's; else the film's own
   FilmPlan picture;
 };
 
 struct BesideResult {
   std::size_t frames = 0;
-  double frames_per_second = kNotGiven;            // of the film that was written
-  double run_from = kNotGiven, pace = kNotGiven;   // where the run begins [s], and its clock against the film's
+  double frames_per_second = kNotGiven;                // of the film that was written
+  double run_from = kNotGiven, pace = kNotGiven;       // where the run begins [s], and its clock against the film's
   double only_film = kNotGiven, only_run = kNotGiven;  // last difference
 };
 

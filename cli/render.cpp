@@ -79,19 +79,17 @@ void render(Options o) {
   }
   const io::RunReader run(o.run);
   if (!o.beside.film.empty()) {
-    if (filmed) throw InputError("--theme", "film does not go with --beside; render the film first, then its run beside it");
+    if (filmed)
+      throw InputError("--theme", "film does not go with --beside; render the film first, then its run beside it");
     io::check_not_input(o.output, o.beside.film);
     o.beside.run = o.run;
     o.beside.picture = o.plan;
     if (!o.colour_given) o.beside.picture.style.colour = render::Colour::kSteel;
     const BesideResult done = render_beside(run, o.beside, o.output, pictures, o);
     if (!o.json) return;
-    nlohmann::ordered_json summary = {{"output", o.output.string()},
-                                      {"frames", done.frames},
-                                      {"frames_per_second", done.frames_per_second},
-                                      {"slow", o.plan.style.slow},
-                                      {"run_from_s", done.run_from},
-                                      {"run_pace", done.pace}};
+    nlohmann::ordered_json summary = {
+        {"output", o.output.string()}, {"frames", done.frames},       {"frames_per_second", done.frames_per_second},
+        {"slow", o.plan.style.slow},   {"run_from_s", done.run_from}, {"run_pace", done.pace}};
     if (!std::isnan(done.only_film)) {
       summary["only_film"] = done.only_film;
       summary["only_simulation"] = done.only_run;
@@ -138,6 +136,8 @@ void add_render(CLI::App& app) {
       ->capture_default_str();
   verb->add_option("--wipe-at", o->beside.wipe, "Share of a wipe that shows the film, 0 to 1; not given: it sweeps");
   verb->add_option("--opacity", o->beside.opacity, "Of the balls in an overlay, 0 (outlines alone) to 1")
+      ->capture_default_str();
+  verb->add_option("--passages", o->beside.passages, "Lifter passages that a difference is a running mean over")
       ->capture_default_str();
   add_film_input(*verb, o->beside.input);
   add_common(*verb, *o);

@@ -17,8 +17,8 @@ constexpr int kEdge = 480;             // [px]
 constexpr double kRate = 30;           // pictures per second
 constexpr double kMostPictures = 240;  // of each film
 constexpr double kMostTurns = 3;
-constexpr double kAlike = 0.02;      // of two mills' speeds: they can be kept in step by their angle
-constexpr double kJustShort = 0.05;  // of a lifter's pitch
+constexpr double kAlike = 0.02;                // of two mills' speeds: they can be kept in step by their angle
+constexpr double kJustShort = 0.05;            // of a lifter's pitch
 constexpr std::uintmax_t kLargest = 6u << 20;  // [bytes] of one film
 constexpr double kQuality[] = {26, 32, 38};    // x264's crf, one after the other until the film is small enough
 
@@ -159,8 +159,9 @@ SideBySide small_films(const Shown& a, const Shown& b, const fs::path& folder, c
     seconds = std::min({seconds, span_of(*a.motion) - step.a_from, (span_of(*b.motion) - step.b_from) / step.pace});
     films.note =
         step.by_lifters ? "Both begin with the lifters in the same place" : "Both begin with their first picture";
-    films.note += step.by_angle ? " and keep step by the angle of their mills."
-                                : " and keep step by the clock, for the mills turn at different speeds or at ones not known.";
+    films.note += step.by_angle
+                      ? " and keep step by the angle of their mills."
+                      : " and keep step by the clock, for the mills turn at different speeds or at ones not known.";
   }
   films.rate = kRate;
   films.slow = std::clamp(kMostPictures / kRate / seconds, 1.0, 4.0);

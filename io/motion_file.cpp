@@ -136,8 +136,8 @@ struct Writer {
     if (!camera) return;
     const RowMajor rotation = camera->rotation;
     hdf5::write_array<double>(file, path + "/pinhole",
-                              std::array{camera->focal, camera->centre_u, camera->centre_v, camera->k1, camera->k2}, {5},
-                              "");
+                              std::array{camera->focal, camera->centre_u, camera->centre_v, camera->k1, camera->k2},
+                              {5}, "");
     hdf5::write_array<double>(file, path + "/rotation", std::span(rotation.data(), 9), {3, 3}, "");
     hdf5::write_array<double>(file, path + "/translation", std::span(camera->translation.data(), 3), {3}, "");
   }

@@ -61,7 +61,7 @@ struct BesideRenderer::Impl {
     glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);  // colours are premultiplied
     glDisable(GL_DEPTH_TEST);
     glDisable(GL_DITHER);
-    if (style.view == BesideView::kDifference) coverage.emplace(plan->edge, style.passage);
+    if (style.view == BesideView::kDifference) coverage.emplace(plan->edge, style.mean_over);
   }
 
   void look_at(const BesidePlan::Place& square) {  // from here on the mill stands in its middle
@@ -83,9 +83,11 @@ struct BesideRenderer::Impl {
   void draw_run(const Frame& frame);
   void draw_over_film(const Frame& frame);
   void draw_edges(const ChargeEdge& of, Rgba colour, double from, double to);
+  void draw_surfaces();
   void name_edges(const ChargeEdge& film, const ChargeEdge& run);
   void draw_wipe(const BesideMoment& moment);
-  void draw_difference(const BesideMoment& moment);
+  void add_coverage(const std::vector<FilmedBall>& balls, const Frame& frame);
+  void draw_difference(const Frame& frame);
 
   RunSetup setup;
   BesideStyle style;
@@ -94,6 +96,7 @@ struct BesideRenderer::Impl {
   OffscreenContext context;
   ColourScale scale;
   FilmProjection projection;
+  std::vector<Vec2> film_surface, run_surface;  // [m]
   std::optional<BesidePlan> plan;
   std::optional<CoverageMean> coverage;
   std::unique_ptr<Canvas> canvas;
@@ -108,7 +111,11 @@ void BesideRenderer::Impl::paint_still() {
   glClear(GL_COLOR_BUFFER_BIT);
   look_at(plan->run);
   if (style.view == BesideView::kSide || style.view == BesideView::kDifference) draw_shell(*canvas, shape);
+  // Under the film of two, in the column beside one.
+  const double left = canvas->layout.picture.left;
+  if (!plan->two) canvas->layout.picture.left = canvas->layout.panel.left - canvas->px(28);
   draw_scale_bar(*canvas, shape, kNotGiven);
+  canvas->layout.picture.left = left;
   draw_still_words(*canvas, *plan, setup, style, words);
   flush();
   still->capture();
@@ -150,7 +157,15 @@ void BesideRenderer::Impl::draw_edges(const ChargeEdge& of, Rgba colour, double 
     stroke_over_film(*canvas,
                      {on_film(from * r * std::cos(a), from * r * std::sin(a), 0),
                       on_film(to * r * std::cos(a), to * r * std::sin(a), 0)},
-                     canvas->stroke(3.2), colour);
+                     canvas->stroke(4.6), colour);
+  }
+}
+
+void BesideRenderer::Impl::draw_surfaces() {
+  for (const auto& [surface, colour] : {std::pair{&film_surface, kFilmInk}, {&run_surface, kRunInk}}) {
+    std::vector<Vec2> line;
+    for (const Vec2& p : *surface) line.push_back(on_film(p.x(), p.y(), 0));
+    if (line.size() > 1) stroke_over_film(*canvas, line, canvas->stroke(2.6), colour);
   }
 }
 
@@ -163,11 +178,11 @@ void BesideRenderer::Impl::name_edges(const ChargeEdge& film, const ChargeEdge& 
                top = canvas->layout.camera.centre_v - half;
   for (const auto& [name, deg] : names) {
     if (std::isnan(deg)) continue;
-    const double a = radians(deg), r = 1.09 * shape.radius;
+    const double a = radians(deg), r = 1.11 * shape.radius;
     const Vec2 out = canvas->layout.camera.direction(a);
     const double width = canvas->text.width(name, word) + canvas->px(8), height = 1.35 * word.size;
     const Vec2 at = on_film(r * std::cos(a), r * std::sin(a), 0) +
-                    0.5 * Vec2(std::abs(out.x()) * width, std::abs(out.y()) * height).norm() * out;
+                    (0.5 * (std::abs(out.x()) * width + std::abs(out.y()) * height) + canvas->px(3)) * out;
     const double x = std::clamp(at.x(), left + width / 2, left + plan->edge - width / 2);
     const double y = std::clamp(at.y(), top + height / 2, top + plan->edge - height / 2);
     canvas->meshes.rectangle(x - width / 2, y - height / 2, x + width / 2, y + height / 2,
@@ -203,7 +218,8 @@ void BesideRenderer::Impl::draw_wipe(const BesideMoment& moment) {
   if (line + gap + run_width < plan->film.left + edge) tag("simulation", line + gap, right);
 }
 
-void BesideRenderer::Impl::draw_difference(const BesideMoment& moment) {
+void BesideRenderer::Impl::add_coverage(const std::vector<FilmedBall>& balls, const Frame& frame) {
+  look_at(plan->film);
   const Camera& camera = canvas->layout.camera;
   const Vec2 corner(plan->film.left, plan->film.top);
   const auto disc = [&](double x, double y, double radius) {
@@ -211,13 +227,14 @@ void BesideRenderer::Impl::draw_difference(const BesideMoment& moment) {
     return CoveredDisc{at.x(), at.y(), radius * camera.pixels_per_metre};
   };
   std::vector<CoveredDisc> film, run;
-  if (moment.balls != nullptr)
-    for (const FilmedBall& b : *moment.balls) film.push_back(disc(b.x, b.y, b.radius));
-  for (std::size_t i = 0; i < moment.run->x.size(); ++i)
-    run.push_back(disc(moment.run->x[i], moment.run->y[i], setup.balls.radius[i]));
+  for (const FilmedBall& b : balls) film.push_back(disc(b.x, b.y, b.radius));
+  for (std::size_t i = 0; i < frame.x.size(); ++i) run.push_back(disc(frame.x[i], frame.y[i], setup.balls.radius[i]));
   coverage->add(film, run);
+}
+
+void BesideRenderer::Impl::draw_difference(const Frame& frame) {
   picture->draw(coverage->picture(kFilmInk, kRunInk, scaled(ink::kSteel, 0.62)), plan->film.left, plan->film.top);
-  draw_lifters(*canvas, shape, moment.run->mill_angle);
+  draw_lifters(*canvas, shape, frame.mill_angle);
   canvas->meshes.flush();
 }
 
@@ -228,11 +245,25 @@ BesideRenderer::~BesideRenderer() = default;
 FilmSquare BesideRenderer::square() const { return {impl_->plan->edge, impl_->plan->margin}; }
 void BesideRenderer::set_projection(FilmProjection projection) { impl_->projection = std::move(projection); }
 
-void BesideRenderer::set_scale(double low, double high) {
-  impl_->scale.low = low;
-  impl_->scale.high = high;
-  impl_->is_painted = false;
+void BesideRenderer::set_surfaces(std::vector<Vec2> film, std::vector<Vec2> run) {
+  impl_->film_surface = std::move(film);
+  impl_->run_surface = std::move(run);
 }
+
+void BesideRenderer::set_scale(double low, double high) {
+  ColourScale& scale = impl_->scale;
+  const auto& radii = impl_->setup.balls.radius;
+  if (scale.by == Colour::kSize && !radii.empty()) {
+    const auto [smallest, largest] = std::minmax_element(radii.begin(), radii.end());
+    scale.low = *smallest;
+    scale.high = *largest;
+  } else {
+    scale.low = scale.by == Colour::kSpin ? -high : low;  // pale is zero
+    scale.high = high;
+  }
+}
+
+void BesideRenderer::compare(const std::vector<FilmedBall>& film, const Frame& run) { impl_->add_coverage(film, run); }
 
 const Image& BesideRenderer::draw(const BesideMoment& moment) {
   Impl& my = *impl_;
@@ -240,24 +271,25 @@ const Image& BesideRenderer::draw(const BesideMoment& moment) {
     const CurrentContext current(my.context);
     if (!my.is_painted) my.paint_still();
     my.still->restore();
-    const auto both_edges = [&] {
-      my.draw_edges(moment.run_edge, kRunInk, 1.012, 1.052);
-      my.draw_edges(moment.film_edge, kFilmInk, 1.052, 1.092);
+    const auto marks_of_both = [&] {
+      my.draw_surfaces();
+      my.draw_edges(moment.run_edge, kRunInk, 1.005, 1.055);
+      my.draw_edges(moment.film_edge, kFilmInk, 1.06, 1.11);
       my.name_edges(moment.film_edge, moment.run_edge);
       my.flush();
     };
     my.look_at(my.plan->film);
     if (my.style.view == BesideView::kDifference)
-      my.draw_difference(moment);
+      my.draw_difference(*moment.run);
     else
       my.picture->draw(*moment.film, my.plan->film.left, my.plan->film.top);
     if (my.style.view == BesideView::kOverlay) my.draw_over_film(*moment.run);
     if (my.style.view == BesideView::kWipe) my.draw_wipe(moment);
-    both_edges();
+    marks_of_both();
     if (my.style.view == BesideView::kSide) {
       my.look_at(my.plan->run);
       my.draw_run(*moment.run);
-      both_edges();
+      marks_of_both();
     }
     draw_moving_words(*my.canvas, *my.plan, my.style, my.words, moment.clock, only_film(), only_run());
     my.flush();

@@ -20,13 +20,13 @@ struct BesideStyle {
   Colour colour = Colour::kSteel;  // of the run's balls, side and wipe
   bool mirror = false;             // the film's mill turns clockwise: so does the run
   double slow = 1;                 // how many times slower than true time
-  double opacity = 0.25;           // of the balls' discs in the overlay, [0, 1]
-  std::size_t passage = 1;         // pictures of a lifter passage: the difference is a running mean over them
+  double opacity = 0.12;           // of the balls' discs in the overlay, [0, 1]
+  std::size_t mean_over = 1;       // pictures: the difference is a running mean over them
 };
 
 // What is written beside the pictures.
 struct BesideSource {
-  std::string name, detail;
+  std::string role, name, detail;  // "Film", the file, a line about it
 };
 struct BesideRow {  // of the table
   std::string name, film, run, difference;
@@ -59,12 +59,11 @@ struct FilmedBall {
 };
 
 struct BesideMoment {
-  const Image* film = nullptr;  // the square's picture
+  const Image* film = nullptr;  // the square's picture, transparent where it shows nothing
   const Frame* run = nullptr;
   double clock = kNotGiven;  // since the first picture [s]; NaN: a still
   ChargeEdge film_edge, run_edge;
-  double wipe = 0.5;                            // share of the square that shows the film
-  const std::vector<FilmedBall>* balls = nullptr;  // found in the film's picture; for the difference
+  double wipe = 0.5;  // share of the square that shows the film
 };
 
 class BesideRenderer {
@@ -78,11 +77,16 @@ class BesideRenderer {
   FilmSquare square() const;
   void set_projection(FilmProjection projection);  // before the first draw
   void set_scale(double low, double high);         // as Renderer's
+  // The charge's mean free surface in both [m], drawn over the balls; none where empty.
+  void set_surfaces(std::vector<Eigen::Vector2d> film, std::vector<Eigen::Vector2d> run);
+
+  // For the difference: what was found in a picture of the film, and the run at that moment.
+  void compare(const std::vector<FilmedBall>& film, const Frame& run);
 
   // The picture; valid until the next draw.
   const Image& draw(const BesideMoment& moment);
 
-  // Of the last difference: shares of the area that either covers.
+  // Of the running mean: shares of the area that either covers.
   double only_film() const;
   double only_run() const;
 

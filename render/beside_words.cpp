@@ -53,20 +53,19 @@ void swatch(Canvas& canvas, double x, double baseline, Rgba colour) {
 }
 
 // A dot of the source's colour, its role and name, and a line about it.
-void source_lines(Canvas& canvas, double x, double y, double width, const char* role, const BesideSource& source,
-                  Rgba colour) {
+void source_lines(Canvas& canvas, double x, double y, double width, const BesideSource& source, Rgba colour) {
   const TextStyle bold{canvas.letter(16), ink::kText, Weight::kBold}, name = quiet(canvas, 13);
   swatch(canvas, x, y, colour);
   const double indent = canvas.px(19);
-  canvas.text.add(role, x + indent, y, bold);
-  const double after = indent + canvas.text.width(role, bold) + canvas.px(9);
+  canvas.text.add(source.role, x + indent, y, bold);
+  const double after = indent + canvas.text.width(source.role, bold) + canvas.px(9);
   canvas.text.add(fitted(canvas, source.name, width - after, name), x + after, y, name);
   canvas.text.add(fitted(canvas, source.detail, width - indent, name), x + indent, y + canvas.px(20), name);
 }
 
 // As many whole notes as have room, from `top` to `bottom`.
-void notes(Canvas& canvas, double left, double right, double top, double bottom,
-           const std::vector<std::string>& notes, double size) {
+void notes(Canvas& canvas, double left, double right, double top, double bottom, const std::vector<std::string>& notes,
+           double size) {
   const TextStyle style = quiet(canvas, size);
   const double step = 1.32 * style.size;
   double y = top + style.size;
@@ -102,7 +101,7 @@ const char* title_of(BesideView view) {
 std::string percent(double share) { return fmt::format("{:.1f} %", 100 * share); }
 
 // Places of the column, in units below its top.
-constexpr double kClock = 116, kSources = 158, kTable = 250;
+constexpr double kClock = 116, kSources = 158, kTable = 260;
 
 // Below the table: the key of the difference, then the notes.
 double key_top(const BesideWords& words) { return kTable + 22 * (static_cast<double>(words.table.size()) + 1); }
@@ -116,12 +115,12 @@ void draw_column(Canvas& canvas, const RunSetup& setup, const BesideStyle& style
   const auto y = [&](double units) { return panel.top + canvas.px(units); };
   canvas.text.add(title_of(style.view), left, y(18), {canvas.letter(21), ink::kText, Weight::kBold});
   const TextStyle small = quiet(canvas, 13);
-  canvas.text.add(fitted(canvas, mill_in_words(setup.config) + " · " + charge_in_words(setup), right - left, small), left,
-                  y(42), small);
+  canvas.text.add(fitted(canvas, mill_in_words(setup.config) + " · " + charge_in_words(setup), right - left, small),
+                  left, y(42), small);
   rule(canvas, left, right, y(62));
   rule(canvas, left, right, y(134));
-  source_lines(canvas, left, y(kSources), right - left, "Film", words.film, kFilmInk);
-  source_lines(canvas, left, y(kSources + 46), right - left, "Simulation", words.run, kRunInk);
+  source_lines(canvas, left, y(kSources), right - left, words.film, kFilmInk);
+  source_lines(canvas, left, y(kSources + 46), right - left, words.run, kRunInk);
   rule(canvas, left, right, y(kTable - 22));
 
   const double columns[] = {left + canvas.px(214), left + canvas.px(330), right};
@@ -146,7 +145,8 @@ void draw_column(Canvas& canvas, const RunSetup& setup, const BesideStyle& style
     }
   }
   rule(canvas, left, right, y(notes_top(style, words) - 10));
-  notes(canvas, left, right, y(notes_top(style, words) + 6), panel.bottom, words.notes, 12);
+  notes(canvas, left, right, y(notes_top(style, words) + 6), panel.bottom - canvas.px(54), words.notes,
+        12);  // the scale bar stands below
 }
 
 }  // namespace
@@ -158,8 +158,8 @@ BesidePlan::BesidePlan(Canvas& canvas, BesideView view) {
   if (two) {
     stacked = picture.width() < picture.height();
     const int across = stacked ? 1 : 2, down = stacked ? 2 : 1;
-    edge = static_cast<int>(std::floor(std::min(picture.width() / across - 16 * unit,
-                                                (picture.height() - kFoot * unit) / down - kHead * unit)));
+    edge = static_cast<int>(std::floor(
+        std::min(picture.width() / across - 16 * unit, (picture.height() - kFoot * unit) / down - kHead * unit)));
     const double cell = picture.width() / across, step = kHead * unit + edge;
     const double top = (picture.height() - down * step - kFoot * unit) / 2 + kHead * unit;
     const auto place = [&](int i, int j) {
@@ -184,28 +184,28 @@ void draw_still_words(Canvas& canvas, const BesidePlan& plan, const RunSetup& se
     return;
   }
   const double head = canvas.px(kHead - 24);
-  source_lines(canvas, plan.film.left, plan.film.top - canvas.px(kHead) + canvas.px(28), plan.edge, "Film", words.film,
+  source_lines(canvas, plan.film.left, plan.film.top - canvas.px(kHead) + canvas.px(28), plan.edge, words.film,
                kFilmInk);
-  source_lines(canvas, plan.run.left, plan.run.top - head + canvas.px(4), plan.edge, "Simulation", words.run, kRunInk);
+  source_lines(canvas, plan.run.left, plan.run.top - head + canvas.px(4), plan.edge, words.run, kRunInk);
   const double left = canvas.layout.picture.left + canvas.layout.picture.width() * (plan.stacked ? 0.42 : 0.5);
   const double foot = std::max(plan.film.top, plan.run.top) + plan.edge;
   notes(canvas, left + canvas.px(110), canvas.layout.picture.right - canvas.px(20), foot + canvas.px(8),
-        canvas.layout.picture.bottom - canvas.px(4), words.notes, 11);
+        canvas.layout.picture.bottom - canvas.px(4), words.notes, 12);
 }
 
-void draw_moving_words(Canvas& canvas, const BesidePlan& plan, const BesideStyle& style,
-                       const BesideWords& words, double clock, double only_film, double only_run) {
+void draw_moving_words(Canvas& canvas, const BesidePlan& plan, const BesideStyle& style, const BesideWords& words,
+                       double clock, double only_film, double only_run) {
   auto& text = canvas.text;
-  const std::string seconds = std::isnan(clock) ? "still" : fmt::format("{:.2f}", clock);
-  const char* unit = std::isnan(clock) ? "" : "s";
-  const std::string pace = std::isnan(clock) ? "" : time_note(style.slow);
+  const bool still = std::isnan(clock);  // has no clock
+  const std::string seconds = still ? "" : fmt::format("{:.2f}", clock), pace = still ? "" : time_note(style.slow);
+  const char* unit = still ? "no clock" : "s";
   if (plan.two) {
     const double foot = std::max(plan.film.top, plan.run.top) + plan.edge;
     const TextStyle large{canvas.letter(30), ink::kText, Weight::kBold};
     const double middle = canvas.layout.picture.left + canvas.layout.picture.width() * (plan.stacked ? 0.42 : 0.5);
     const double baseline = foot + canvas.px(36), width = text.width(seconds, large);
     text.add(seconds, middle - width / 2, baseline, large);
-    text.add(unit, middle + width / 2 + canvas.px(6), baseline, {canvas.letter(16), ink::kQuiet});
+    text.add(unit, middle + width / 2 + canvas.px(still ? -34 : 6), baseline, {canvas.letter(16), ink::kQuiet});
     text.add(pace, middle, baseline + canvas.px(19), quiet(canvas, 12, Align::kCentre));
     return;
   }
@@ -213,7 +213,8 @@ void draw_moving_words(Canvas& canvas, const BesidePlan& plan, const BesideStyle
   const auto y = [&](double units) { return panel.top + canvas.px(units); };
   const TextStyle large{canvas.letter(40), ink::kText, Weight::kBold};
   text.add(seconds, panel.left, y(kClock), large);
-  text.add(unit, panel.left + text.width(seconds, large) + canvas.px(8), y(kClock), {canvas.letter(20), ink::kQuiet});
+  text.add(unit, panel.left + text.width(seconds, large) + canvas.px(still ? 0 : 8), y(kClock),
+           {canvas.letter(20), ink::kQuiet});
   text.add(pace, panel.right, y(kClock), quiet(canvas, 13, Align::kRight));
   if (style.view != BesideView::kDifference) return;
   const TextStyle value{canvas.letter(13), ink::kText, Weight::kBold, Align::kRight};

@@ -26,7 +26,7 @@ void draw_still_words(Canvas& canvas, const BesidePlan& plan, const RunSetup& se
                       const BesideWords& words);
 
 // The clock and, in a difference, its shares.
-void draw_moving_words(Canvas& canvas, const BesidePlan& plan, const BesideStyle& style,
-                       const BesideWords& words, double clock, double only_film, double only_run);
+void draw_moving_words(Canvas& canvas, const BesidePlan& plan, const BesideStyle& style, const BesideWords& words,
+                       double clock, double only_film, double only_run);
 
 }  // namespace tumble::render

@@ -37,8 +37,8 @@ void PictureQuad::draw(const Image& image, int left, int top) {
   glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, image.width, image.height, 0, GL_RGBA, GL_UNSIGNED_BYTE, image.rgba.data());
   const auto w = static_cast<float>(image.width), h = static_cast<float>(image.height);
   const float x0 = static_cast<float>(left) - 0.5f, y0 = static_cast<float>(top) - 0.5f;  // edges of pixels
-  const float corners[] = {x0,     y0,     0, 0, x0 + w, y0, w, 0, x0 + w, y0 + h, w, h,
-                           x0,     y0,     0, 0, x0 + w, y0 + h, w, h, x0, y0 + h, 0, h};
+  const float corners[] = {x0, y0, 0, 0, x0 + w, y0,     w, 0, x0 + w, y0 + h, w, h,
+                           x0, y0, 0, 0, x0 + w, y0 + h, w, h, x0,     y0 + h, 0, h};
   glUseProgram(pipeline_.program);
   glBindVertexArray(pipeline_.vertex_array);
   glBindBuffer(GL_ARRAY_BUFFER, pipeline_.buffer);
