@@ -73,6 +73,16 @@ MillCamera with_lengths_times(const MillCamera& camera, double factor) {
   return scaled;
 }
 
+MillCamera from_afar(const MillCamera& camera) {
+  constexpr double kTimes = 1e4;
+  MillCamera afar = camera;
+  afar.focal *= kTimes;
+  afar.translation.z() *= kTimes;
+  afar.k1 *= kTimes * kTimes;
+  afar.k2 *= std::pow(kTimes, 4);
+  return afar;
+}
+
 MillCamera for_enlarged_pictures(const MillCamera& camera, double factor) {
   MillCamera scaled = camera;
   scaled.focal *= factor;

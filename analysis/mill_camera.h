@@ -26,6 +26,8 @@ MillCamera rolled(const MillCamera& camera, double roll);
 
 // The same camera with lengths times `factor`, or for pictures enlarged `factor` times along each side.
 MillCamera with_lengths_times(const MillCamera& camera, double factor);
+// The same view of the glass from so far away that depth does not show.
+MillCamera from_afar(const MillCamera& camera);
 MillCamera for_enlarged_pictures(const MillCamera& camera, double factor);
 
 }  // namespace tumble::analysis

@@ -83,10 +83,12 @@ struct Timeline {
   bool run_ends_first = false;
 };
 
-Timeline timeline_of(const ChargeMotion& film, const ChargeMotion& run, double given_rate, double slow) {
+Timeline timeline_of(const ChargeMotion& film, const ChargeMotion& run, double run_from, double given_rate,
+                     double slow) {
   Timeline line;
   const auto& rows = film.profile;
   line.step = in_step(film, run);
+  if (!std::isnan(run_from)) line.step = InStep{0, run_from, line.step.pace, false, line.step.by_angle};
   // A film without a clock takes the run's: its "seconds" are frames.
   const double second = std::isnan(film.frames_per_second) ? line.step.pace : 1;
   const double film_rate = (std::isnan(film.frames_per_second) ? 1 : film.frames_per_second) / second;
@@ -182,7 +184,7 @@ std::string colour_in_words(render::Colour colour, double top) {
 }
 
 std::vector<std::string> notes_of(const ChargeMotion& film, const ChargeMotion& run, const Timeline& line,
-                                  render::BesideView view, double passages, std::size_t mean_over) {
+                                  render::BesideView view, double passages, std::size_t mean_over, bool told) {
   std::vector<std::string> notes;
   if (view == render::BesideView::kDifference)
     notes.push_back(fmt::format(
@@ -201,6 +203,8 @@ std::vector<std::string> notes_of(const ChargeMotion& film, const ChargeMotion& 
         fmt::format("Begun with the lifters in the same place; one clock for both, at different speeds ({:.1f} and "
                     "{:.1f} rev/min).",
                     film.speed_rpm.value, run.speed_rpm.value));
+  else if (told)
+    notes.push_back(fmt::format("The film begins {:.3g} s into the run, as told.", line.step.b_from));
   else
     notes.push_back("One clock for both; the lifters' phase in the film is not known.");
   if (std::isnan(film.frames_per_second) && film.source == MotionSource::kFilm)
@@ -264,6 +268,9 @@ BesideResult render_beside(const io::RunReader& run, BesidePlan plan, const fs::
   if (!std::isnan(plan.wipe) && !(plan.wipe >= 0 && plan.wipe <= 1))
     throw InputError("--wipe-at", "must lie between 0 and 1: the share that shows the film");
   if (!(plan.opacity >= 0 && plan.opacity <= 1)) throw InputError("--opacity", "must lie between 0 and 1");
+  if (!std::isnan(plan.run_from) && !(plan.run_from >= 0 && plan.run_from < run.time().back() - run.time().front()))
+    throw InputError("--run-from",
+                     fmt::format("must lie between 0 and the run's {:.3g} s", run.time().back() - run.time().front()));
   if (!(plan.passages > 0)) throw InputError("--passages", "must be above 0; 1 is one lifter passage");
   if (run.frame_count() < 2) throw InputError("run", "holds no motion; simulate for longer");
   const Filmed film = read_film(plan.film, run.setup(), plan.input, options);
@@ -279,7 +286,7 @@ BesideResult render_beside(const io::RunReader& run, BesidePlan plan, const fs::
   const double given =
       plan.rate_given ? double(picture.format.fps_numerator) / picture.format.fps_denominator : kNotGiven;
   const Timeline line = stills ? timeline_of_stills(film.motion, truth, given, picture.style.slow, as_pictures)
-                               : timeline_of(film.motion, truth, given, picture.style.slow);
+                               : timeline_of(film.motion, truth, plan.run_from, given, picture.style.slow);
   parse_rate(std::clamp(std::round(1000 * line.rate) / 1000, 1.0, 1000.0), "--fps", picture.format.fps_numerator,
              picture.format.fps_denominator);
 
@@ -298,7 +305,7 @@ BesideResult render_beside(const io::RunReader& run, BesidePlan plan, const fs::
       stills ? line.all.size() : static_cast<std::size_t>(std::max(1.0, std::round(plan.passages * passage * rate)));
   const double top = scale_top(run, style.colour);
   render::BesideWords words = words_of(film, truth);
-  words.notes = notes_of(film.motion, truth, line, kind, plan.passages, style.mean_over);
+  words.notes = notes_of(film.motion, truth, line, kind, plan.passages, style.mean_over, !std::isnan(plan.run_from));
   if (style.colour != render::Colour::kSteel)
     words.notes.push_back(fmt::format("The balls' colour is their {}.", colour_in_words(style.colour, top)));
   for (const std::string& note : words.notes) say(options, "note: " + note);

@@ -13,7 +13,8 @@ struct BesidePlan {
   fs::path film;  // a film, a folder of stills or one, or the MOTION.h5 that was made of it
   FilmInput input;
   std::string view = "side";
-  double wipe = kNotGiven;  // share of the square that shows the film; NaN: the line sweeps
+  double wipe = kNotGiven;      // share of the square that shows the film; NaN: the line sweeps
+  double run_from = kNotGiven;  // where in the run the film begins [s]; NaN: with the lifters in phase
   double opacity = 0.12;
   double passages = 1;      // of lifters, that a difference is a running mean over
   bool rate_given = false;  // film.format's; else the film's own

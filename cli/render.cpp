@@ -134,6 +134,8 @@ void add_render(CLI::App& app) {
   verb->add_option("--as", o->beside.view,
                    "side (two panels), overlay (the run's balls in the film), wipe, or difference (what only one has)")
       ->capture_default_str();
+  verb->add_option("--run-from", o->beside.run_from,
+                   "Where in the run the film begins, s; not given: as early as the lifters are in phase");
   verb->add_option("--wipe-at", o->beside.wipe, "Share of a wipe that shows the film, 0 to 1; not given: it sweeps");
   verb->add_option("--opacity", o->beside.opacity, "Of the balls in an overlay, 0 (outlines alone) to 1")
       ->capture_default_str();

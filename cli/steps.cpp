@@ -145,7 +145,7 @@ ChargeMotion measure(const fs::path& input, const analysis::TracksOptions& film,
   } else {
     ProgressLine line(options, "reading the film", "nothing was written");
     motion = analysis::are_stills(input.string()) ? analysis::measure_stills(input.string(), film, line.callback())
-                                            : analysis::measure_film(input.string(), film, line.callback());
+                                                  : analysis::measure_film(input.string(), film, line.callback());
   }
   motion.origin = input.string();
   return motion;

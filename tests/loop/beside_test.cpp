@@ -19,7 +19,7 @@ class OverItsOwnFilm : public testing::TestWithParam<bool> {};  // clockwise
 TEST_P(OverItsOwnFilm, OutlinesLieOnTheBallsWithinAPixel) {
   Config config = paper_mill();
   config.run.spin_up = 0.6;
-  config.run.revolutions = 0.3;
+  config.run.revolutions = 0.25;
   config.run.frames_per_second = 100;
   const SimulatedMill mill = simulate_in_memory(config);
   render::Style style;
