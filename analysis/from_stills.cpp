@@ -124,8 +124,7 @@ ChargeMotion measure_stills(const std::string& path, const FilmOptions& options,
   outline.centre = enclosing_circle(outline.rings);
   if (!(outline.centre.radius > 0))
     throw InputError(
-        path,
-        "shows no mill; a view along the mill's axis was expected, with most of its round shell in the picture");
+        path, "shows no mill; a view along the mill's axis was expected, with most of its round shell in the picture");
   report(progress, 0.1);
 
   BallEyes eyes;

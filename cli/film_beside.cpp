@@ -195,7 +195,8 @@ std::vector<std::string> notes_of(const ChargeMotion& film, const ChargeMotion& 
         mean_over));
   if (film.source == MotionSource::kStills)
     notes.push_back(
-        "A photograph tells neither time nor phase: the run is shown at a time of its own; lines are mean surfaces.");
+        "A photograph tells neither time nor phase: the run is shown at a time of its own; the line is its mean free "
+        "surface.");
   else if (line.step.by_lifters && line.step.by_angle)
     notes.push_back("Begun with the lifters in the same place, kept in step by the angle of the mills.");
   else if (line.step.by_lifters)
@@ -327,7 +328,7 @@ BesideResult render_beside(const io::RunReader& run, BesidePlan plan, const fs::
                              return analysis::ball_in_picture(view, x / radius, y / radius, r / radius, kCorners);
                            }});
 
-  if (stills) renderer.set_surfaces(surface_of(film.motion), surface_of(truth));
+  if (stills) renderer.set_surface(surface_of(truth));
 
   std::unique_ptr<io::FilmWriter> writer;
   if (!as_pictures) writer = std::make_unique<io::FilmWriter>(output.string(), picture.format);

@@ -83,7 +83,7 @@ struct BesideRenderer::Impl {
   void draw_run(const Frame& frame);
   void draw_over_film(const Frame& frame);
   void draw_edges(const ChargeEdge& of, Rgba colour, double from, double to);
-  void draw_surfaces();
+  void draw_surface();
   void name_edges(const ChargeEdge& film, const ChargeEdge& run);
   void draw_wipe(const BesideMoment& moment);
   void add_coverage(const std::vector<FilmedBall>& balls, const Frame& frame);
@@ -96,7 +96,7 @@ struct BesideRenderer::Impl {
   OffscreenContext context;
   ColourScale scale;
   FilmProjection projection;
-  std::vector<Vec2> film_surface, run_surface;  // [m]
+  std::vector<Vec2> surface;  // of the run [m]
   std::optional<BesidePlan> plan;
   std::optional<CoverageMean> coverage;
   std::unique_ptr<Canvas> canvas;
@@ -161,12 +161,10 @@ void BesideRenderer::Impl::draw_edges(const ChargeEdge& of, Rgba colour, double 
   }
 }
 
-void BesideRenderer::Impl::draw_surfaces() {
-  for (const auto& [surface, colour] : {std::pair{&film_surface, kFilmInk}, {&run_surface, kRunInk}}) {
-    std::vector<Vec2> line;
-    for (const Vec2& p : *surface) line.push_back(on_film(p.x(), p.y(), 0));
-    if (line.size() > 1) stroke_over_film(*canvas, line, canvas->stroke(2.6), colour);
-  }
+void BesideRenderer::Impl::draw_surface() {
+  std::vector<Vec2> line;
+  for (const Vec2& p : surface) line.push_back(on_film(p.x(), p.y(), 0));
+  if (line.size() > 1) stroke_over_film(*canvas, line, canvas->stroke(2.6), kRunInk);
 }
 
 void BesideRenderer::Impl::name_edges(const ChargeEdge& film, const ChargeEdge& run) {
@@ -245,10 +243,7 @@ BesideRenderer::~BesideRenderer() = default;
 FilmSquare BesideRenderer::square() const { return {impl_->plan->edge, impl_->plan->margin}; }
 void BesideRenderer::set_projection(FilmProjection projection) { impl_->projection = std::move(projection); }
 
-void BesideRenderer::set_surfaces(std::vector<Vec2> film, std::vector<Vec2> run) {
-  impl_->film_surface = std::move(film);
-  impl_->run_surface = std::move(run);
-}
+void BesideRenderer::set_surface(std::vector<Vec2> run) { impl_->surface = std::move(run); }
 
 void BesideRenderer::set_scale(double low, double high) {
   ColourScale& scale = impl_->scale;
@@ -272,7 +267,7 @@ const Image& BesideRenderer::draw(const BesideMoment& moment) {
     if (!my.is_painted) my.paint_still();
     my.still->restore();
     const auto marks_of_both = [&] {
-      my.draw_surfaces();
+      my.draw_surface();
       my.draw_edges(moment.run_edge, kRunInk, 1.005, 1.055);
       my.draw_edges(moment.film_edge, kFilmInk, 1.06, 1.11);
       my.name_edges(moment.film_edge, moment.run_edge);

@@ -77,8 +77,8 @@ class BesideRenderer {
   FilmSquare square() const;
   void set_projection(FilmProjection projection);  // before the first draw
   void set_scale(double low, double high);         // as Renderer's
-  // The charge's mean free surface in both [m], drawn over the balls; none where empty.
-  void set_surfaces(std::vector<Eigen::Vector2d> film, std::vector<Eigen::Vector2d> run);
+  // The run's mean free surface [m], drawn over the balls; none where empty.
+  void set_surface(std::vector<Eigen::Vector2d> run);
 
   // For the difference: what was found in a picture of the film, and the run at that moment.
   void compare(const std::vector<FilmedBall>& film, const Frame& run);

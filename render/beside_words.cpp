@@ -84,14 +84,21 @@ void rule(Canvas& canvas, double left, double right, double y) {
   canvas.meshes.line({left, std::round(y)}, {right, std::round(y)}, canvas.stroke(1.0), ink::kFaint);
 }
 
-const char* title_of(BesideView view) {
+// "film" or "photograph"
+std::string lower_role(const BesideSource& source) {
+  std::string role = source.role;
+  if (!role.empty() && role[0] >= 'A' && role[0] <= 'Z') role[0] = static_cast<char>(role[0] - 'A' + 'a');
+  return role;
+}
+
+std::string title_of(BesideView view, const BesideSource& film) {
   switch (view) {
     case BesideView::kOverlay:
-      return "Simulation over film";
+      return "Simulation over " + lower_role(film);
     case BesideView::kWipe:
-      return "Film and simulation";
+      return film.role + " and simulation";
     case BesideView::kDifference:
-      return "Film against simulation";
+      return film.role + " against simulation";
     case BesideView::kSide:
       break;
   }
@@ -113,10 +120,11 @@ void draw_column(Canvas& canvas, const RunSetup& setup, const BesideStyle& style
   const Box& panel = canvas.layout.panel;
   const double left = panel.left, right = panel.right;
   const auto y = [&](double units) { return panel.top + canvas.px(units); };
-  canvas.text.add(title_of(style.view), left, y(18), {canvas.letter(21), ink::kText, Weight::kBold});
+  canvas.text.add(title_of(style.view, words.film), left, y(18), {canvas.letter(21), ink::kText, Weight::kBold});
   const TextStyle small = quiet(canvas, 13);
-  canvas.text.add(fitted(canvas, mill_in_words(setup.config) + " · " + charge_in_words(setup), right - left, small),
-                  left, y(42), small);
+  std::string mill = mill_in_words(setup.config) + " · " + charge_in_words(setup);
+  if (canvas.text.width(mill, small) > right - left) mill = charge_in_words(setup);
+  canvas.text.add(fitted(canvas, mill, right - left, small), left, y(42), small);
   rule(canvas, left, right, y(62));
   rule(canvas, left, right, y(134));
   source_lines(canvas, left, y(kSources), right - left, words.film, kFilmInk);
@@ -124,7 +132,7 @@ void draw_column(Canvas& canvas, const RunSetup& setup, const BesideStyle& style
   rule(canvas, left, right, y(kTable - 22));
 
   const double columns[] = {left + canvas.px(214), left + canvas.px(330), right};
-  const char* heads[] = {"film", "simulation", "difference"};
+  const std::string heads[] = {lower_role(words.film), "simulation", "difference"};
   for (int c = 0; c < 3; ++c) canvas.text.add(heads[c], columns[c], y(kTable), quiet(canvas, 12, Align::kRight));
   double row = kTable + 22;
   for (const BesideRow& r : words.table) {

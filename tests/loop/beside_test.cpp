@@ -36,14 +36,15 @@ TEST_P(OverItsOwnFilm, OutlinesLieOnTheBallsWithinAPixel) {
   view.clockwise = seen.rotation == Rotation::kClockwise;
   view.margin = 1;
   view.edge_px = static_cast<int>(std::lround(2 * seen.camera.radius_px));
-  const double scale = view.edge_px / (2 * seen.camera.radius_px), radius = 0.5 * config.mill.diameter;
+  const double scale = view.edge_px / (2 * seen.camera.radius_px), radius = seen.mill_radius;
   const double left = seen.camera.centre_u_px - seen.camera.radius_px,
                top = seen.camera.centre_v_px - seen.camera.radius_px;
   EXPECT_EQ(view.clockwise, GetParam());
   double squares = 0, worst_width = 0;
   const Frame& f = mill.frames.back();
   for (std::size_t b = 0; b < f.x.size(); ++b) {
-    const double r = mill.setup.balls.radius[b], pixels = 302.4 / radius;  // the renderer's plan, as below
+    const double r = mill.setup.balls.radius[b],
+                 pixels = 302.4 / (0.5 * config.mill.diameter);  // the renderer's plan, as below
     const auto outline = analysis::ball_in_picture(view, f.x[b] / radius, f.y[b] / radius, r / radius, 40);
     Eigen::Vector2d middle(0, 0);
     for (const auto& p : outline) middle += p / 40;
