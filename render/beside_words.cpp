@@ -138,9 +138,13 @@ void draw_column(Canvas& canvas, const RunSetup& setup, const BesideStyle& style
   for (const BesideRow& r : words.table) {
     const TextStyle value{canvas.letter(13), ink::kText, Weight::kRegular, Align::kRight};
     canvas.text.add(r.name, left, y(row), quiet(canvas, 13));
-    canvas.text.add(r.film, columns[0], y(row), value);
-    canvas.text.add(r.run, columns[1], y(row), value);
-    canvas.text.add(r.difference, columns[2], y(row), value);
+    // Letters do not shrink below what can be read: a small picture has no room for errors.
+    const auto shown = [&](const std::string& text) {
+      return canvas.layout.unit < 0.75 ? text.substr(0, text.find(" ±")) : text;
+    };
+    canvas.text.add(shown(r.film), columns[0], y(row), value);
+    canvas.text.add(shown(r.run), columns[1], y(row), value);
+    canvas.text.add(shown(r.difference), columns[2], y(row), value);
     row += 22;
   }
   if (style.view == BesideView::kDifference) {

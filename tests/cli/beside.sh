@@ -20,6 +20,10 @@ for turning in counter_clockwise clockwise; do
   check "$(get only_film $turning.json) < 0.06 && $(get only_simulation $turning.json) < 0.06" \
     "$turning: a run differs from its own film: $(get only_film $turning.json) $(get only_simulation $turning.json)"
 done
+# The run turns as the film does: what a wipe shows of it is itself a film of a clockwise mill.
+done_by render run.h5 -o wiped.mp4 --beside clockwise.h5 --as wipe --wipe-at 0 --overlay none --fps 100
+done_by analyse wiped.mp4 --mill "$source/examples/lab_mill_55cm.toml" -o wiped.h5 --json
+[ "$(get rotation out.txt)" = '"clockwise"' ] || fail "beside a clockwise film the run turns $(get rotation out.txt)"
 # Another run of that mill is no match, so that the check above means something.
 done_by simulate "$source/examples/lab_mill_55cm.toml" -o other.h5 --set run.spin_up=0.6 --set run.revolutions=0.35 \
   --set run.frames_per_second=100 --set run.seed=7
