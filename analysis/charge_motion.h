@@ -55,7 +55,10 @@ struct TracksOptions : FilmOptions {
 // Balls that another program has followed through a film, in its pixels. The clock is told from flights.
 ChargeMotion measure_tracks(const PixelTracks& tracks, const TracksOptions& options);
 
-// A folder of still pictures of one mill, far apart in time or not, in order of their names.
-ChargeMotion measure_stills(const std::string& folder, const FilmOptions& options, const Progress& progress = {});
+// Whether a path is of stills (a folder, or one PNG or JPEG) and not of a film.
+bool are_stills(const std::string& path);
+
+// A folder of still pictures of one mill, far apart in time or not, in order of their names; or one still.
+ChargeMotion measure_stills(const std::string& path, const FilmOptions& options, const Progress& progress = {});
 
 }  // namespace tumble::analysis

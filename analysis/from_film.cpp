@@ -217,6 +217,9 @@ void describe_mill(const FilmScene& scene, const Timeline& line, const Bearings&
   motion.camera.radius_px_se = motion.camera.radius_px * scene.glass_error;
   motion.camera.metres_per_pixel_se = motion.camera.metres_per_pixel * scene.glass_error;
   motion.camera.k1 = scene.drum.k1;
+  const MillCamera& camera = scene.drum.camera;
+  motion.camera.lens = rolled(with_lengths_times(scene.from_afar ? from_afar(camera) : camera, 1 / scene.radius),
+                              radians(bearings.roll_deg));
   motion.camera.width_px = scene.drum.camera.width;
   motion.camera.height_px = scene.drum.camera.height;
   motion.mill_radius = scene.radius * scene.metres;

@@ -2,9 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <opencv2/core/utility.hpp>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include "analysis/charge_mask.h"
@@ -12,6 +10,7 @@
 #include "analysis/charge_statistics.h"
 #include "analysis/still_edges.h"
 #include "analysis/still_view.h"
+#include "analysis/stills.h"
 #include "analysis/view.h"
 #include "core/angle.h"
 #include "core/error.h"
@@ -22,8 +21,6 @@
 namespace tumble::analysis {
 namespace {
 
-namespace fs = std::filesystem;
-
 constexpr double kBirthScore = 0.4;    // of a ball that is believed
 constexpr double kClearLean = 5;       // of the charge to one side [degrees]
 constexpr double kCircleError = 1;     // of axis and shell in a still [px]
@@ -32,27 +29,13 @@ constexpr double kWhole = 0.98;        // of the mill's area in the picture, for
 constexpr double kTallLifters = 1.15;  // shell over tips, at most
 constexpr double kSameScale = 0.1;     // by which scales from the balls and from the shell may differ, of the logarithm
 
-std::vector<cv::Mat> read_stills(const std::string& folder) {
-  std::error_code ec;
-  if (!fs::is_directory(folder, ec))
-    throw InputError(folder, "is no folder; a folder of stills (PNG or JPEG) was expected");
-  std::vector<fs::path> paths;
-  for (const auto& entry : fs::directory_iterator(folder, ec)) {
-    std::string kind = entry.path().extension().string();
-    std::transform(kind.begin(), kind.end(), kind.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    if (kind == ".png" || kind == ".jpg" || kind == ".jpeg") paths.push_back(entry.path());
-  }
-  if (paths.empty()) throw InputError(folder, "holds no stills; PNG or JPEG pictures were expected");
-  std::sort(paths.begin(), paths.end());
+std::vector<cv::Mat> read_stills(const std::string& path) {
   std::vector<cv::Mat> stills;
-  for (const fs::path& path : paths) {
-    cv::Mat still = cv::imread(path.string(), cv::IMREAD_COLOR);
-    if (still.empty()) throw InputError(path.string(), "cannot be read as a picture; PNG or JPEG was expected");
+  for (const std::string& file : still_files(path)) {
+    cv::Mat still = read_still(file);
     if (!stills.empty() && still.size() != stills[0].size())
       throw InputError(
-          path.string(),
-          "has another size than the stills before it; pictures of one mill from one camera were expected");
+          file, "has another size than the stills before it; pictures of one mill from one camera were expected");
     stills.push_back(std::move(still));
   }
   return stills;
@@ -121,9 +104,9 @@ double fine_diameter(const Config& known, const MillView& view) {
 
 }  // namespace
 
-ChargeMotion measure_stills(const std::string& folder, const FilmOptions& options, const Progress& progress) {
+ChargeMotion measure_stills(const std::string& path, const FilmOptions& options, const Progress& progress) {
   cv::setNumThreads(1);
-  const std::vector<cv::Mat> stills = read_stills(folder);
+  const std::vector<cv::Mat> stills = read_stills(path);
   const Config none;
   const Config& known = options.mill != nullptr ? *options.mill : none;
   ChargeMotion motion;
@@ -141,8 +124,7 @@ ChargeMotion measure_stills(const std::string& folder, const FilmOptions& option
   outline.centre = enclosing_circle(outline.rings);
   if (!(outline.centre.radius > 0))
     throw InputError(
-        folder,
-        "shows no mill; a view along the mill's axis was expected, with most of its round shell in the picture");
+        path, "shows no mill; a view along the mill's axis was expected, with most of its round shell in the picture");
   report(progress, 0.1);
 
   BallEyes eyes;
@@ -179,7 +161,7 @@ ChargeMotion measure_stills(const std::string& folder, const FilmOptions& option
   } else {
     shares = two_tone_shares(stills, outline.centre);
     if (shares.empty())
-      throw InputError(folder,
+      throw InputError(path,
                        "shows neither balls of at least 3 pixels' radius nor a bed of one tone before another; one or "
                        "the other was expected in the mill");
     motion.caveats.push_back("balls too small to be told apart: toe, shoulder and filling are those of the bed's tone");

@@ -23,8 +23,6 @@ Eigen::Vector2d undistorted(const MillCamera& camera, const Eigen::Vector2d& see
 
 }  // namespace
 
-Eigen::Matrix3d MillCamera::frontal() { return Eigen::Vector3d(1, -1, -1).asDiagonal(); }
-
 cv::Point2d picture_of(const MillCamera& camera, const Eigen::Vector3d& place) {
   const Eigen::Vector3d p = camera.rotation * place + camera.translation;
   if (!(p.z() > 0)) return {kNotGiven, kNotGiven};
@@ -73,6 +71,16 @@ MillCamera with_lengths_times(const MillCamera& camera, double factor) {
   MillCamera scaled = camera;
   scaled.translation *= factor;
   return scaled;
+}
+
+MillCamera from_afar(const MillCamera& camera) {
+  constexpr double kTimes = 1e4;
+  MillCamera afar = camera;
+  afar.focal *= kTimes;
+  afar.translation.z() *= kTimes;
+  afar.k1 *= kTimes * kTimes;
+  afar.k2 *= std::pow(kTimes, 4);
+  return afar;
 }
 
 MillCamera for_enlarged_pictures(const MillCamera& camera, double factor) {

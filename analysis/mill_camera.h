@@ -3,25 +3,10 @@
 #include <opencv2/core.hpp>
 
 #include "core/config.h"
+#include "core/mill_camera.h"
 
+// What a pinhole camera makes of a mill.
 namespace tumble::analysis {
-
-// A pinhole camera with square pixels and radial distortion that looks at a mill.
-//
-// Mill frame: x right, y up, z along the axis towards the camera; origin on the axis, z = 0 the inside of the front
-// glass (a ball that touches it has z = -r). "Up" is the picture's: the camera is not rolled against the mill until
-// `rolled` says so. Camera frame: x right, y down, z away from the camera (OpenCV's). Lengths in metres where the
-// mill's diameter is known, else in shell radii.
-struct MillCamera {
-  double focal = 1000;                   // f [px], > 0
-  double centre_u = 0, centre_v = 0;     // principal point [px]
-  double k1 = 0, k2 = 0;                 // radial distortion: seen = true (1 + k1 q^2 + k2 q^4), q in focal lengths
-  Eigen::Matrix3d rotation = frontal();  // camera from mill
-  Eigen::Vector3d translation = Eigen::Vector3d(0, 0, 1);  // of the mill's origin, in the camera frame
-  int width = 0, height = 0;                               // of the picture [px]
-
-  static Eigen::Matrix3d frontal();  // of a camera that looks along the axis
-};
 
 // Pixel at which a place of the mill frame is seen; NaN for what lies behind the camera.
 cv::Point2d picture_of(const MillCamera& camera, const Eigen::Vector3d& place);
@@ -41,6 +26,8 @@ MillCamera rolled(const MillCamera& camera, double roll);
 
 // The same camera with lengths times `factor`, or for pictures enlarged `factor` times along each side.
 MillCamera with_lengths_times(const MillCamera& camera, double factor);
+// The same view of the glass from so far away that depth does not show.
+MillCamera from_afar(const MillCamera& camera);
 MillCamera for_enlarged_pictures(const MillCamera& camera, double factor);
 
 }  // namespace tumble::analysis

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "analysis/film_reader.h"
+#include "analysis/mill_camera.h"
 #include "analysis/mill_scale.h"
 #include "core/mill_shape.h"
 
@@ -140,6 +141,7 @@ void shrink_to_film(ChargeMotion& m, int enlarged) {
   camera.metres_per_pixel *= enlarged;
   for (double* se : {&camera.centre_u_px_se, &camera.centre_v_px_se, &camera.radius_px_se}) *se /= enlarged;
   camera.metres_per_pixel_se *= enlarged;
+  if (camera.lens) camera.lens = for_enlarged_pictures(*camera.lens, 1.0 / enlarged);
   camera.width_px /= enlarged;
   camera.height_px /= enlarged;
   m.tracks.change([&](TrackPoint& p) {

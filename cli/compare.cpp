@@ -117,7 +117,7 @@ Source read(const fs::path& input, const analysis::TracksOptions& film, const Co
     if (!s.run->result().caveat.empty()) s.motion.caveats.push_back(s.run->result().caveat);
   } else {
     s.motion = measure(input, film, options);
-    if (!fs::is_directory(input, error) && input.extension() != ".csv") s.film = input;
+    if (!analysis::are_stills(input.string()) && input.extension() != ".csv") s.film = input;
     const bool drawn = film.mill != nullptr && film.mill->mill.diameter > 0;
     s.shape = drawn ? make_mill_shape(*film.mill) : shape_of(s.motion);
   }

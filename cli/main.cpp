@@ -1,5 +1,6 @@
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -40,5 +41,7 @@ int main(int argc, char** argv) {
   for (const Verb& verb : kWithoutPictures)
     if (verb.name == word) return run_program(argc, argv, {&verb.add, 1});
   if (word == "--version" && argc == 2) return run_program(argc, argv, {});
-  return hand_over(word == "render" ? "tumble-render" : "tumble-pictures", argv);
+  const bool reads_film =
+      std::any_of(argv, argv + argc, [](const char* a) { return std::string_view(a).starts_with("--beside"); });
+  return hand_over(word == "render" && !reads_film ? "tumble-render" : "tumble-pictures", argv);
 }

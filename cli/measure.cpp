@@ -28,8 +28,8 @@ ChargeMotion measure(const fs::path& input, const analysis::TracksOptions& film,
     motion = analysis::measure_tracks(io::read_pixel_tracks(input), film);
   } else {
     ProgressLine line(options, "reading the film", "nothing was written");
-    motion = fs::is_directory(input, error) ? analysis::measure_stills(input.string(), film, line.callback())
-                                            : analysis::measure_film(input.string(), film, line.callback());
+    motion = analysis::are_stills(input.string()) ? analysis::measure_stills(input.string(), film, line.callback())
+                                                  : analysis::measure_film(input.string(), film, line.callback());
   }
   motion.origin = input.string();
   return motion;

@@ -1,10 +1,12 @@
+#include "cli/film_beside.h"
 #include "cli/program.h"
 #include "cli/verbs.h"
 
 // `tumble-pictures`: every verb (see main.cpp).
 int main(int argc, char** argv) {
   using namespace tumble::cli;
-  constexpr AddVerb kVerbs[] = {add_run,        add_simulate, add_render,    add_analyse, add_compare,
+  constexpr AddVerb kRender = [](CLI::App& app) { add_render(app, render_beside); };
+  constexpr AddVerb kVerbs[] = {add_run,        add_simulate, kRender,       add_analyse, add_compare,
                                 add_parameters, add_sweep,    add_calibrate, add_effects, add_shell};
   return run_program(argc, argv, kVerbs);
 }

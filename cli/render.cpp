@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <sstream>
 
+#include "cli/film_beside.h"
 #include "cli/film_theme.h"
 #include "cli/options.h"
 #include "cli/picture_output.h"
@@ -49,6 +51,8 @@ struct Options : CommonOptions {
   std::uint64_t look_seed = 1;
   std::string context = "osmesa";
   FilmPlan plan;
+  BesidePlan beside;
+  bool colour_given = false;
 };
 
 const std::map<std::string, render::ContextKind> kContexts = {{"osmesa", render::ContextKind::kOsmesa},
@@ -162,7 +166,42 @@ std::size_t render_runs(const std::vector<io::RunReader>& runs, const Options& o
   return render_shots(shots, o.plan, o.output, o);
 }
 
-void render(Options o) {
+// What a run beside a film has no use for.
+void settle_beside(Options& o, OutputKind kind, Theme theme) {
+  const auto refuse = [](bool given, const char* option, const char* why) {
+    if (given) throw InputError(option, why);
+  };
+  refuse(theme == Theme::kFilm, "--theme",
+         "film does not go with --beside; render the film first, then its run beside it");
+  refuse(theme == Theme::kLight, "--theme", "light does not go with --beside; its pair of colours needs a dark ground");
+  refuse(o.runs.size() > 1, "--beside", "shows one run; leave out the others");
+  refuse(kind != OutputKind::kFilm && kind != OutputKind::kFolder, "--output",
+         "of a run beside a film must be FILM.mp4, .webm, .gif or FRAMES/");
+  refuse(o.camera != "lab" || o.zoom, "--beside", "has a camera of its own; leave out --camera and --zoom");
+  refuse(o.from || o.seconds || o.every, "--beside", "shows all of the film; leave out --from, --for and --every");
+  refuse(o.context != "osmesa", "--beside", "is drawn by osmesa; leave out --context");
+  o.beside.run = o.runs[0];
+  o.beside.rate_given = o.fps.has_value();
+  o.beside.picture = o.plan;
+  render::Colour& colour = o.beside.picture.style.colour;
+  if (!o.colour_given) colour = render::Colour::kSteel;
+  refuse(colour == render::Colour::kResidence || colour == render::Colour::kForce, "--colour",
+         "beside a film must be speed, size, spin or steel");
+}
+
+void report_beside(const BesideResult& done, const Options& o) {
+  if (!o.json) return;
+  nlohmann::ordered_json summary = {
+      {"output", o.output.string()}, {"frames", done.frames},       {"frames_per_second", done.frames_per_second},
+      {"slow", o.plan.style.slow},   {"run_from_s", done.run_from}, {"run_pace", done.pace}};
+  if (!std::isnan(done.only_film)) {
+    summary["only_film"] = done.only_film;
+    summary["only_simulation"] = done.only_run;
+  }
+  print(summary.dump(2) + "\n");
+}
+
+void render(Options o, RenderBeside beside) {
   limit_threads(o.threads);
   const Theme theme = parse_name(o.theme, "--theme", kThemes);
   const bool filmed = theme == Theme::kFilm;
@@ -183,6 +222,9 @@ void render(Options o) {
   o.plan.style.overlay = parse_overlay(o.overlay);
   o.plan.style.view = parse_view(o.camera, o.zoom);
   o.plan.style.context = parse_name(o.context, "--context", kContexts);
+  const bool is_beside = !o.beside.film.empty();
+  if (is_beside && !beside) throw InputError("--beside", "reads films, as `tumble render` can; call that");
+  if (is_beside) settle_beside(o, kind, theme);
   if (filmed) {
     if (kind == OutputKind::kDrawing) throw InputError(o.output.string(), "cannot hold a filmed mill; give a .png");
     if (o.runs.size() > 1) throw InputError("--theme", "film shows one run; leave out the others");
@@ -197,6 +239,7 @@ void render(Options o) {
     io::check_output_file(o.output / picture_name(0), o.force);
   } else {
     for (const fs::path& run : o.runs) io::check_not_input(o.output, run);
+    if (is_beside) io::check_not_input(o.output, o.beside.film);
     io::check_output_file(o.output, o.force);
   }
   std::vector<io::RunReader> runs;
@@ -204,6 +247,7 @@ void render(Options o) {
     runs.emplace_back(path);
     if (runs.back().frame_count() == 0) throw InputError(path.string(), "holds no frames; simulate for longer");
   }
+  if (is_beside) return report_beside(beside(runs[0], o.beside, o.output, o), o);
   const std::size_t frames =
       filmed ? render_filmed_run(runs[0], o.plan, o.look_seed, o.output, o) : render_runs(runs, o);
   if (!o.json) return;
@@ -219,7 +263,7 @@ void render(Options o) {
 
 }  // namespace
 
-void add_render(CLI::App& app) {
+void add_render(CLI::App& app, RenderBeside beside) {
   auto o = std::make_shared<Options>();
   CLI::App* verb = app.add_subcommand("render", "Turn runs into a film, numbered pictures, or a still");
   verb->add_option("runs", o->runs, "RUN.h5; several, up to 12, stand side by side")
@@ -255,12 +299,29 @@ void add_render(CLI::App& app) {
       ->capture_default_str();
   verb->add_option("--preset", o->preset, "x264 preset, ultrafast to veryslow [veryfast]");
   verb->add_option("--crf", o->crf, "Quality, 0 (lossless) to 51 (.mp4) or 63 (.webm) [20; 36]");
+  verb->add_option("--beside", o->beside.film,
+                   "A real film, a folder of stills or one, or the MOTION.h5 made of it: the run beside it, in step");
+  verb->add_option("--as", o->beside.view,
+                   "side (two panels), overlay (the run's balls in the film), wipe, or difference (what only one has)")
+      ->capture_default_str();
+  verb->add_option("--run-from", o->beside.run_from,
+                   "Where in the run the film begins, s; not given: as early as the lifters are in phase");
+  verb->add_option("--wipe-at", o->beside.wipe, "Share of a wipe that shows the film, 0 to 1; not given: it sweeps");
+  verb->add_option("--opacity", o->beside.opacity, "Of the balls in an overlay, 0 (outlines alone) to 1")
+      ->capture_default_str();
+  verb->add_option("--passages", o->beside.passages, "Lifter passages that a difference is a running mean over")
+      ->capture_default_str();
+  add_film_input(*verb, o->beside.input);
   add_common(*verb, *o);
   verb->footer(
       "Examples: tumble render run.h5 -o film.mp4 --slow 4 --overlay toe,shoulder,tracks\n"
       "          tumble render n50.h5 n70.h5 n90.h5 -o speeds.webm\n"
-      "          tumble render run.h5 -o still.svg --at 1.5");
-  verb->callback([o] { render(*o); });
+      "          tumble render run.h5 -o still.svg --at 1.5\n"
+      "          tumble render run.h5 -o beside.mp4 --beside film.mp4 --as overlay");
+  verb->callback([o, verb, beside] {
+    o->colour_given = verb->count("--colour") > 0;
+    render(*o, beside);
+  });
 }
 
 }  // namespace tumble::cli

@@ -1,9 +1,9 @@
+#include "cli/film_beside.h"
 #include "cli/program.h"
-#include "cli/verbs.h"
 
 // `tumble-render`: the one verb that draws but reads no films (see main.cpp).
 int main(int argc, char** argv) {
   using namespace tumble::cli;
-  constexpr AddVerb kVerbs[] = {add_render};
+  constexpr AddVerb kVerbs[] = {[](CLI::App& app) { add_render(app, nullptr); }};
   return run_program(argc, argv, kVerbs);
 }

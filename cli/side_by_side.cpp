@@ -17,6 +17,8 @@ constexpr int kEdge = 480;             // [px]
 constexpr double kRate = 30;           // pictures per second
 constexpr double kMostPictures = 240;  // of each film
 constexpr double kMostTurns = 3;
+constexpr double kAlike = 0.02;                // of two mills' speeds: they can be kept in step by their angle
+constexpr double kJustShort = 0.05;            // of a lifter's pitch
 constexpr std::uintmax_t kLargest = 6u << 20;  // [bytes] of one film
 constexpr double kQuality[] = {26, 32, 38};    // x264's crf, one after the other until the film is small enough
 
@@ -26,22 +28,29 @@ struct Stretch {
   double step = 0;     // between pictures, likewise
 };
 
-double span_of(const Shown& s) {
-  if (s.run != nullptr) return s.run->frame_count() < 2 ? 0 : s.run->time().back() - s.run->time().front();
-  const auto& rows = s.motion->profile;
-  return rows.size() < 2 ? 0 : rows.back().time - rows.front().time;
+double span_of(const ChargeMotion& m) {
+  return m.profile.size() < 2 ? 0 : m.profile.back().time - m.profile.front().time;
 }
 
 // [degrees], after so many seconds; NaN where not known.
-double mill_angle_at(const Shown& s, double time) {
-  const auto& rows = s.motion->profile;
+double mill_angle_at(const ChargeMotion& m, double time) {
+  const auto& rows = m.profile;
   if (rows.empty()) return kNotGiven;
-  const auto at = std::lower_bound(rows.begin(), rows.end(), rows.front().time + time,
-                                   [](const ProfileRow& row, double t) { return row.time < t; });
-  return (at == rows.end() ? rows.back() : *at).mill_angle_deg;
+  const auto after = std::lower_bound(rows.begin(), rows.end(), rows.front().time + time,
+                                      [](const ProfileRow& row, double t) { return row.time < t; });
+  if (after == rows.end()) return rows.back().mill_angle_deg;
+  if (after == rows.begin()) return after->mill_angle_deg;
+  const ProfileRow& before = *(after - 1);
+  const double share = (rows.front().time + time - before.time) / (after->time - before.time);
+  return before.mill_angle_deg + share * (after->mill_angle_deg - before.mill_angle_deg);
 }
 
-double degrees_per_second(const Shown& s) { return 6 * s.motion->speed_rpm.value; }
+// By the speed; where that is not known, by the angle of its frames (whatever the unit of their time).
+double degrees_per_second(const ChargeMotion& m) {
+  if (!std::isnan(m.speed_rpm.value) || m.profile.size() < 2) return 6 * m.speed_rpm.value;
+  const ProfileRow &first = m.profile.front(), &last = m.profile.back();
+  return (last.mill_angle_deg - first.mill_angle_deg) / (last.time - first.time);
+}
 
 void write_run(const Shown& s, const Stretch& stretch, const fs::path& file, double quality,
                const CommonOptions& options) {
@@ -75,7 +84,7 @@ void write_film(const Shown& s, const Stretch& stretch, const fs::path& file, do
   io::FilmWriter writer(file.string(), format);
   analysis::PictureView view;
   view.camera = s.motion->camera;
-  view.mirror = s.motion->rotation == Rotation::kClockwise;
+  view.mirror = view.clockwise = s.motion->rotation == Rotation::kClockwise;
   view.edge_px = kEdge;
   ProgressLine line(options, "making a small film", "nothing was written");
   analysis::show_film(
@@ -104,45 +113,66 @@ std::string caption_of(const Shown& s) {
 
 }  // namespace
 
+InStep in_step(const ChargeMotion& a, const ChargeMotion& b) {
+  InStep step;
+  const double turn_a = degrees_per_second(a), turn_b = degrees_per_second(b), ratio = turn_a / turn_b;
+  const bool clocks = !std::isnan(a.frames_per_second) && !std::isnan(b.frames_per_second);
+  step.by_angle = std::isfinite(ratio) && ratio > 0 && (!clocks || std::abs(ratio - 1) < kAlike);
+  if (step.by_angle) step.pace = ratio;
+  const int lifters = a.lifter_count;
+  if (lifters <= 0 || lifters != b.lifter_count || !(std::abs(turn_b) > 0)) return step;
+  // The mean over a film that stays in step, for the angle of a single frame may be off.
+  std::vector<double> apart;
+  for (const ProfileRow& row : a.profile) {
+    const double time = row.time - a.profile.front().time;
+    const double at_b = step.pace * time;
+    if (!apart.empty() && (!step.by_angle || at_b > span_of(b))) break;
+    apart.push_back(lifters * (row.mill_angle_deg - mill_angle_at(b, at_b)));
+  }
+  const double later = mean_direction(apart).value / lifters;  // of B, in degrees of the mill
+  if (std::isnan(later)) return step;
+  step.by_lifters = true;
+  // Just short of a whole pitch is rather just before B's begin.
+  const double pitch = 360.0 / lifters;
+  if (later > (1 - kJustShort) * pitch)
+    step.a_from = (pitch - later) / std::abs(turn_a);
+  else
+    step.b_from = later / std::abs(turn_b);
+  return step;
+}
+
 SideBySide small_films(const Shown& a, const Shown& b, const fs::path& folder, const CommonOptions& options) {
   SideBySide films;
   double seconds = INFINITY;
   for (const Shown* s : {&a, &b}) {
     if (!s->any()) continue;
-    seconds = std::min(seconds, span_of(*s));
-    const double turn = 360 / std::abs(degrees_per_second(*s));
+    seconds = std::min(seconds, span_of(*s->motion));
+    const double turn = 360 / std::abs(degrees_per_second(*s->motion));
     if (std::isfinite(turn)) seconds = std::min(seconds, kMostTurns * turn);
   }
   if (!std::isfinite(seconds) || !(seconds > 0)) return films;
 
-  // B's clock against A's, and how much later it begins.
-  double pace = 1, later = 0;
+  InStep step;
   if (a.any() && b.any()) {
-    const double ratio = degrees_per_second(a) / degrees_per_second(b);
-    const bool alike = std::abs(ratio - 1) < 0.02;
-    if (alike) pace = ratio;
-    const int lifters = a.motion->lifter_count;
-    const double apart = mill_angle_at(a, 0) - mill_angle_at(b, 0);
-    if (lifters > 0 && lifters == b.motion->lifter_count && std::isfinite(apart)) {
-      const double pitch = 360.0 / lifters;
-      later = (apart - pitch * std::floor(apart / pitch)) / std::abs(degrees_per_second(b));
-    }
-    if (!(later < span_of(b))) later = 0;
-    seconds = std::min({seconds, span_of(a), (span_of(b) - later) / pace});
-    films.note = later > 0 ? "Both begin with the lifters in the same place" : "Both begin with their first picture";
-    films.note += alike ? " and keep step by the angle of their mills."
-                        : " and keep step by the clock, for the mills turn at different speeds or at ones not known.";
+    step = in_step(*a.motion, *b.motion);
+    if (!(step.b_from < span_of(*b.motion))) step.b_from = 0, step.by_lifters = false;
+    seconds = std::min({seconds, span_of(*a.motion) - step.a_from, (span_of(*b.motion) - step.b_from) / step.pace});
+    films.note =
+        step.by_lifters ? "Both begin with the lifters in the same place" : "Both begin with their first picture";
+    films.note += step.by_angle
+                      ? " and keep step by the angle of their mills."
+                      : " and keep step by the clock, for the mills turn at different speeds or at ones not known.";
   }
   films.rate = kRate;
   films.slow = std::clamp(kMostPictures / kRate / seconds, 1.0, 4.0);
-  const double step = 1 / (kRate * films.slow);
-  seconds = std::min(seconds, (kMostPictures - 1) * step);
+  const double apart = 1 / (kRate * films.slow);
+  seconds = std::min(seconds, (kMostPictures - 1) * apart);
   if (a.any()) {
-    films.a = write_small(a, {0, seconds, step}, folder / "a.mp4", options);
+    films.a = write_small(a, {step.a_from, seconds, apart}, folder / "a.mp4", options);
     films.a_caption = caption_of(a);
   }
   if (b.any()) {
-    films.b = write_small(b, {later, seconds * pace, step * pace}, folder / "b.mp4", options);
+    films.b = write_small(b, {step.b_from, seconds * step.pace, apart * step.pace}, folder / "b.mp4", options);
     films.b_caption = caption_of(b);
   }
   if (!films.note.empty()) films.note += " ";

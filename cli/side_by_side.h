@@ -8,6 +8,19 @@
 
 namespace tumble::cli {
 
+// How two mills are shown in step: A's clock, begun `a_from` seconds after its first frame, and B's, which begins
+// `b_from` after its own and runs `pace` times as fast.
+struct InStep {
+  double a_from = 0, b_from = 0, pace = 1;
+  bool by_lifters = false;  // begun with the lifters in the same place
+  bool by_angle = false;    // and kept so, by the angle of the mills; else by the clock
+
+  double b_at(double a_time) const { return b_from + pace * (a_time - a_from); }
+};
+
+// By the lifters where both are known; by the angle where the mills turn alike but for 2 %, or one has no clock.
+InStep in_step(const ChargeMotion& a, const ChargeMotion& b);
+
 // One of two sources, as far as it can be shown as a film: a run, or a film file; neither for anything else.
 struct Shown {
   const ChargeMotion* motion = nullptr;
@@ -25,8 +38,7 @@ struct SideBySide {
   double slow = 1;   // times slower than true time
 };
 
-// Small films of both that keep step: the same stretch of true time, begun with the lifters in the same place; where
-// the mills turn alike but for 2 %, by their angle, so that they stay so.
+// Small films of both that keep step over the same stretch of true time.
 SideBySide small_films(const Shown& a, const Shown& b, const fs::path& folder, const CommonOptions& options);
 
 }  // namespace tumble::cli

@@ -25,10 +25,6 @@
 namespace tumble::cli {
 namespace {
 
-struct Range {
-  double low = 0, high = 0;
-};
-
 BallInsight insight_of(const Shot& shot, const render::Style& style) {
   return {*shot.run, shot.truth ? *shot.truth : ChargeMotion{}, style};
 }
@@ -50,30 +46,10 @@ Tops tops_of(const std::vector<Shot>& shots, const render::Style& style) {
   return tops;
 }
 
-// The colour scale of all runs: up to what one ball in a hundred exceeds, so that a single impact does not darken the
-// film.
-Range scale_of(const std::vector<Shot>& shots, render::Colour colour, const Tops& tops) {
+Range colour_ends(const std::vector<Shot>& shots, render::Colour colour, const Tops& tops) {
   if (colour == render::Colour::kResidence) return {0, tops.residence};
   if (colour == render::Colour::kForce) return {0, tops.force};
-  std::vector<double> values;
-  for (const Shot& shot : shots) {
-    const io::RunReader& run = *shot.run;
-    const std::vector<double>& radii = run.setup().balls.radius;
-    if (colour == render::Colour::kSize) values.insert(values.end(), radii.begin(), radii.end());
-    if (colour == render::Colour::kSize || colour == render::Colour::kSteel) continue;
-    const std::size_t step = std::max<std::size_t>(1, run.frame_count() / 50);
-    for (std::size_t i = 0; i < run.frame_count(); i += step) {
-      const Frame f = run.frame(i);
-      for (std::size_t b = 0; b < f.x.size(); ++b)
-        values.push_back(colour == render::Colour::kSpin ? std::abs(f.spin[b]) : std::hypot(f.vx[b], f.vy[b]));
-    }
-  }
-  if (values.empty()) return {0, 1};
-  if (colour == render::Colour::kSize) {
-    const auto [least, most] = std::minmax_element(values.begin(), values.end());
-    return {*least, *most};
-  }
-  return {0, std::max(quantile_of(std::move(values), 0.99), 1e-3)};
+  return scale_of(shots, colour);
 }
 
 analysis::NextFrame frames_of(const io::RunReader& run) {
@@ -152,6 +128,28 @@ void check_view(const std::vector<Shot>& shots, const render::View& view) {
 
 }  // namespace
 
+Range scale_of(const std::vector<Shot>& shots, render::Colour colour) {
+  std::vector<double> values;
+  for (const Shot& shot : shots) {
+    const io::RunReader& run = *shot.run;
+    const std::vector<double>& radii = run.setup().balls.radius;
+    if (colour == render::Colour::kSize) values.insert(values.end(), radii.begin(), radii.end());
+    if (colour == render::Colour::kSize || colour == render::Colour::kSteel) continue;
+    const std::size_t step = std::max<std::size_t>(1, run.frame_count() / 50);
+    for (std::size_t i = 0; i < run.frame_count(); i += step) {
+      const Frame f = run.frame(i);
+      for (std::size_t b = 0; b < f.x.size(); ++b)
+        values.push_back(colour == render::Colour::kSpin ? std::abs(f.spin[b]) : std::hypot(f.vx[b], f.vy[b]));
+    }
+  }
+  if (values.empty()) return {0, 1};
+  if (colour == render::Colour::kSize) {
+    const auto [least, most] = std::minmax_element(values.begin(), values.end());
+    return {*least, *most};
+  }
+  return {0, std::max(quantile_of(std::move(values), 0.99), 1e-3)};
+}
+
 ChargeMotion measure_run(const io::RunReader& run, const CommonOptions& options) {
   ProgressLine line(options, "reading the run", "nothing was written");
   return analysis::measure_frames(run.setup(), frames_of(run), line.callback());
@@ -169,7 +167,7 @@ std::size_t render_shots(const std::vector<Shot>& shots, const FilmPlan& plan, c
   const Timeline timeline = timeline_of(shots, plan);
   const std::size_t count = timeline.count;
   const Tops tops = tops_of(shots, plan.style);
-  const Range scale = scale_of(shots, plan.style.colour, tops);
+  const Range scale = colour_ends(shots, plan.style.colour, tops);
   std::vector<render::SheetMill> mills;
   for (const Shot& shot : shots) mills.push_back({shot.run->setup(), shot.label});
   const auto make_sheet = [&] {

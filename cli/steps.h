@@ -20,6 +20,13 @@ ChargeMotion measure_run(const io::RunReader& run, const CommonOptions& options)
 // Of it, toe and shoulder frame by frame: what their marks need.
 std::vector<ProfileRow> measure_run_edges(const io::RunReader& run, const CommonOptions& options);
 
+// Ends of the colour scale of all runs, by what their frames hold: up to what one ball in a hundred exceeds, so that a
+// single impact does not darken the film.
+struct Range {
+  double low = 0, high = 1;
+};
+Range scale_of(const std::vector<Shot>& shots, render::Colour colour);
+
 // Renders runs, side by side where there are several, as what `output` is by its name (cli/picture_output.h). Returns
 // the number of pictures.
 std::size_t render_shots(const std::vector<Shot>& shots, const FilmPlan& plan, const fs::path& output,

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "core/mill_camera.h"
 #include "core/spool.h"
 #include "core/statistics.h"
 
@@ -92,6 +93,8 @@ struct CameraView {                // films and stills only
   int width_px = 0, height_px = 0;
   double centre_u_px_se = kNotGiven, centre_v_px_se = kNotGiven;  // standard errors
   double radius_px_se = kNotGiven, metres_per_pixel_se = kNotGiven;
+  // The whole camera, of the upright mill frame (not mirrored), lengths in shell radii; none for stills and tracks.
+  std::optional<MillCamera> lens;
 };
 
 inline std::array<double, 360> unknown_ring() {

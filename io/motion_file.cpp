@@ -19,6 +19,8 @@ constexpr const char* kFormatPath = "motion_file_format";
 constexpr std::size_t kMostRows = std::size_t{1} << 30;
 constexpr int kMostCells = 1 << 13;  // of a field's edge
 
+using RowMajor = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
+
 // A column of a table whose rows are structs.
 template <typename Row, typename T>
 struct Column {
@@ -60,6 +62,7 @@ void walk(Io& io, Motion& m) {
   io.later_scalar("camera/k1_se", "", m.camera.k1.se);
   io.scalar("camera/width", "px", m.camera.width_px);
   io.scalar("camera/height", "px", m.camera.height_px);
+  io.lens("camera/lens", m.camera.lens);
 
   io.fixed("ring/occupancy", "", m.ring_occupancy);
   io.later_fixed("ring/occupancy_se", "", m.ring_occupancy_se);
@@ -128,6 +131,15 @@ struct Writer {
   void grid(const std::string& path, const char* unit, const std::vector<double>& values, int n) {
     const auto edge = static_cast<hsize_t>(values.empty() ? 0 : n);
     hdf5::write_array<double>(file, path, values, {edge, edge}, unit);
+  }
+  void lens(const std::string& path, const std::optional<MillCamera>& camera) {
+    if (!camera) return;
+    const RowMajor rotation = camera->rotation;
+    hdf5::write_array<double>(file, path + "/pinhole",
+                              std::array{camera->focal, camera->centre_u, camera->centre_v, camera->k1, camera->k2},
+                              {5}, "");
+    hdf5::write_array<double>(file, path + "/rotation", std::span(rotation.data(), 9), {3, 3}, "");
+    hdf5::write_array<double>(file, path + "/translation", std::span(camera->translation.data(), 3), {3}, "");
   }
   template <typename Rows, typename Row, typename... T>
   void table(const std::string& path, const Rows& rows, const Column<Row, T>&... columns) {
@@ -204,6 +216,19 @@ struct Reader {
     const std::size_t cells = static_cast<std::size_t>(n) * static_cast<std::size_t>(n);
     values = hdf5::read_array<double>(file, path, cells);
     if (!values.empty() && values.size() != cells) throw hdf5::Failure(path + " does not fit field/cells");
+  }
+  void lens(const std::string& path, std::optional<MillCamera>& camera) const {
+    if (!hdf5::exists(file, path)) return;
+    const auto numbers = [&](const char* name, std::size_t count) {
+      auto values = hdf5::read_array<double>(file, path + "/" + name, count);
+      if (values.size() != count) throw hdf5::Failure(path + "/" + name + " has another size than a camera's");
+      return values;
+    };
+    const auto pinhole = numbers("pinhole", 5), rotation = numbers("rotation", 9);
+    const auto translation = numbers("translation", 3);
+    camera = MillCamera{pinhole[0], pinhole[1], pinhole[2], pinhole[3], pinhole[4]};
+    camera->rotation = Eigen::Map<const RowMajor>(rotation.data());
+    camera->translation = Eigen::Map<const Eigen::Vector3d>(translation.data());
   }
   template <typename Rows, typename Row, typename... T>
   void table(const std::string& path, Rows& rows, const Column<Row, T>&... columns) const {

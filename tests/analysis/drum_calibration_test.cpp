@@ -174,7 +174,7 @@ TEST(DrumCalibration, NothingIsHiddenWhereNothingStandsInFront) {
   EXPECT_LT(share, 0.03);
 }
 
-TEST(DrumCalibration, BarIsHiddenAndDoesNotMislead) {
+TEST(AwkwardDrum, BarIsHiddenAndDoesNotMislead) {
   PaintedDrum drum = seen_from(-0.08, 0.03);
   drum.bar_angle = 2.4;
   const Film film = film_of(drum, std::vector<int>(80, 1));
@@ -187,7 +187,7 @@ TEST(DrumCalibration, BarIsHiddenAndDoesNotMislead) {
   EXPECT_LT(view.hidden_share[static_cast<std::size_t>(bar - 12)], 0.1);
 }
 
-TEST(DrumCalibration, RimOutsideOfThePictureIsNoHindrance) {
+TEST(AwkwardDrum, RimOutsideOfThePictureIsNoHindrance) {
   PaintedDrum drum = seen_from(0.06, 0.1);
   drum.camera = camera_for(kPicture, 650, 0.06, 0.1, 0.58 * kPicture.height, drum.rim, {300, 190}, 0.05);
   const Film film = film_of(drum, std::vector<int>(80, 1));
@@ -198,7 +198,7 @@ TEST(DrumCalibration, RimOutsideOfThePictureIsNoHindrance) {
 }
 
 // A third of the rim in view: the circle that is all in view is a part of the back plate.
-TEST(DrumCalibration, ADrumMostlyOutsideOfThePictureIsFound) {
+TEST(AwkwardDrum, ADrumMostlyOutsideOfThePictureIsFound) {
   for (const double step : {0.03, -0.03}) {
     PaintedDrum drum = seen_from(0, 0);
     drum.camera = camera_for(kPicture, 700, 0.0, 0.0, 1.0 * kPicture.height, drum.rim, {470, 300}, 0);
@@ -214,7 +214,7 @@ TEST(DrumCalibration, ADrumMostlyOutsideOfThePictureIsFound) {
 }
 
 // A chart that scrolls beside the drum: a wide circle about the drum's axis moves wherever it is in view, and evenly.
-TEST(DrumCalibration, WhatMovesBesideADrumIsNotTheDrum) {
+TEST(AwkwardDrum, WhatMovesBesideADrumIsNotTheDrum) {
   PaintedDrum drum = seen_from(0, 0);
   drum.camera = camera_for(kPicture, 700, 0, 0, 0.45 * kPicture.height, drum.rim, {175, 180}, 0);
   Film film = film_of(drum, std::vector<int>(60, 1));

@@ -59,6 +59,19 @@ TEST(MillCamera, ABallIsSeenWiderThanItsDiscAsItsOutlineLiesNearer) {
   EXPECT_NEAR(apparent_radius(c, {0, 0, 0}, 0.1), 1000 * std::tan(std::asin(0.1)), 1e-6);
 }
 
+TEST(MillCamera, FromAfarTheGlassLooksTheSameAndDepthDoesNotShow) {
+  MillCamera c = oblique_camera();
+  c.rotation = MillCamera::frontal();
+  const MillCamera afar = from_afar(c);
+  for (double a = 0; a < 6; a += 0.7) {
+    const Eigen::Vector3d place(0.27 * std::cos(a), 0.27 * std::sin(a), 0), behind(place.x(), place.y(), -0.05);
+    const cv::Point2d seen = picture_of(c, place);
+    EXPECT_LT(cv::norm(picture_of(afar, place) - seen), 1e-6);
+    EXPECT_LT(cv::norm(picture_of(afar, behind) - seen), 0.01);
+    EXPECT_GT(cv::norm(picture_of(c, behind) - seen), 5);
+  }
+}
+
 TEST(MillCamera, RolledFrameTurnsPlacesBack) {
   const MillCamera c = oblique_camera(), turned = rolled(c, 0.3);
   const cv::Point2d before = picture_of(c, {0.2 * std::cos(0.3), 0.2 * std::sin(0.3), 0}),

@@ -36,7 +36,7 @@ ChargeMotion a_motion(MotionSource source) {
   for (const MotionQuantity& q : kMotionQuantities) m.*q.of = {v(), v()};
   m.departure_deg = {};
   m.filling.se = kNotGiven;
-  m.camera = {v(), v(), v(), v(), {v(), v()}, {v(), v()}, 1280, 720, v(), v(), v(), v()};
+  m.camera = {v(), v(), v(), v(), {v(), v()}, {v(), v()}, 1280, 720, v(), v(), v(), v(), {}};
   for (double& o : m.ring_occupancy) o = v();
   m.ring_occupancy[17] = kNotGiven;
   for (double& o : m.ring_occupancy_se) o = v();
@@ -50,6 +50,12 @@ ChargeMotion a_motion(MotionSource source) {
   for (auto* values : {&m.field.occupancy, &m.field.occupancy_se, &m.field.vx, &m.field.vy, &m.field.vx_se,
                        &m.field.vy_se, &m.field.temperature})
     *values = {v(), kNotGiven, v(), v()};
+  if (source == MotionSource::kFilm) {
+    MillCamera lens{v(), v(), v(), v(), v()};
+    lens.rotation = Eigen::Matrix3d::NullaryExpr([&](Eigen::Index, Eigen::Index) { return v(); });
+    lens.translation = {v(), v(), v()};
+    m.camera.lens = lens;
+  }
   m.caveats = {"the front glass is scratched", "second"};
   return m;
 }
@@ -79,6 +85,12 @@ std::vector<std::uint64_t> numbers_of(const ChargeMotion& m) {
   for (const auto* values : {&m.field.occupancy, &m.field.occupancy_se, &m.field.vx, &m.field.vy, &m.field.vx_se,
                              &m.field.vy_se, &m.field.temperature})
     for (double x : *values) add(x);
+  if (m.camera.lens) {
+    const MillCamera& lens = *m.camera.lens;
+    for (double x : {lens.focal, lens.centre_u, lens.centre_v, lens.k1, lens.k2}) add(x);
+    for (double x : lens.rotation.reshaped()) add(x);
+    for (double x : lens.translation) add(x);
+  }
   for (int n : {m.lifter_count, m.frames, m.camera.width_px, m.camera.height_px, m.field.n}) add(n);
   for (int n : m.duplicated_frames) add(n);
   for (int n : m.dropped_frames) add(n);
