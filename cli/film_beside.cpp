@@ -303,7 +303,7 @@ BesideResult render_beside(const io::RunReader& run, BesidePlan plan, const fs::
   const double rate = static_cast<double>(line.all.size() - 1) / (line.all.back().clock - line.all.front().clock);
   style.mean_over =
       stills ? line.all.size() : static_cast<std::size_t>(std::max(1.0, std::round(plan.passages * passage * rate)));
-  const Range scale = scale_of({{&run}}, style.colour);
+  const Range scale = scale_of({{&run, nullptr, "", 0}}, style.colour);
   render::BesideWords words = words_of(film, truth);
   words.notes = notes_of(film.motion, truth, line, kind, plan.passages, style.mean_over, !std::isnan(plan.run_from));
   if (style.colour != render::Colour::kSteel)
