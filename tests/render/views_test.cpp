@@ -195,8 +195,7 @@ TEST(Views, TheMeanTurnsWithTheMill) {
   const Case cases[] = {{&Overlay::streamlines, 0.06, -0.1, 0.02},
                         {&Overlay::occupancy, 0.06, -0.1, 0.02},
                         {&Overlay::circulation, 0.06, -0.1, 0.03},
-                        {&Overlay::surface, 0, 0.05, 0.004},
-                        {&Overlay::head, 0, 0.15, 0.05}};  // and its name, on one side
+                        {&Overlay::surface, 0, 0.05, 0.004}};
   for (const double angle : {0.0, 0.8, 4.0}) {
     for (const bool mirror : {false, true}) {
       Scene scene = scene_of(paper_mill(), 0);
@@ -217,6 +216,19 @@ TEST(Views, TheMeanTurnsWithTheMill) {
         EXPECT_NEAR((mirror ? -1 : 1) * (blob.u - 639.5) / kScale, x, c.within) << &c - cases << " at " << angle;
         EXPECT_NEAR((359.5 - blob.v) / kScale, y, c.within) << &c - cases << " at " << angle;
       }
+      Style with = style;
+      with.overlay.head = true;
+      Renderer renderer(scene.setup, with);
+      renderer.set_mean(mean_motion());
+      const Image image = renderer.draw(scene.frame, {});
+      int dashes = 0;  // along the line, half of it
+      for (int k = -190; k < 190; ++k) {
+        const double x = 0.001 * k, across = x * std::cos(angle) + 0.15 * std::sin(angle);
+        const auto u = static_cast<int>(std::lround(639.5 + (mirror ? -1 : 1) * across * kScale));
+        const auto v = static_cast<int>(std::lround(359.5 - (0.15 * std::cos(angle) - x * std::sin(angle)) * kScale));
+        dashes += difference(image, bare, v, u) > 60;
+      }
+      EXPECT_NEAR(dashes, 190, 40) << angle;
     }
   }
 }
@@ -250,20 +262,33 @@ TEST(Views, MarksKeepOffTheKey) {
   Scene scene = scene_of(paper_mill(), 0);
   scene.frame.mill_angle = 0;
   for (const View::From from : {View::From::kLab, View::From::kShell}) {
-    Style style;
+    Style style = plain();
     style.view.from = from;
+    style.overlay.departure = true;
+    const Image keyless = picture(scene, style);
     style.overlay.surface = style.overlay.streamlines = style.overlay.occupancy = style.overlay.chains = true;
-    Style keyless = style;
-    keyless.overlay = {};
     Renderer renderer(scene.setup, style);
     const Image none = renderer.draw(scene.frame, {});
-    const Image without_key = picture(scene, keyless);
-    for (const double at : {40, 50, 58, 122, 130, 140}) {
-      const Image marked = renderer.draw(scene.frame, {at, kNotGiven, {}, {}, {}});
+    int left = none.width, right = 0, top = none.height, bottom = 0;  // of the key
+    for (int v = 0; v < none.height; ++v) {
+      for (int u = 0; u < none.width; ++u) {
+        if (difference(none, keyless, v, u) == 0) continue;
+        left = std::min(left, u);
+        right = std::max(right, u);
+        top = std::min(top, v);
+        bottom = std::max(bottom, v);
+      }
+    }
+    ASSERT_LT(left, right);
+    const double first = from == View::From::kLab ? 120 : 40;  // the side on which the key stands
+    for (double at = first; at <= first + 20; at += 2) {
+      ChargeMotion motion;
+      motion.departure_deg.value = at;
+      renderer.set_mean(motion);
+      const Image marked = renderer.draw(scene.frame, {});
       int covered = 0;
-      for (int v = 0; v < none.height; ++v)
-        for (int u = 0; u < none.width; ++u)
-          covered += difference(none, without_key, v, u) > 30 && difference(marked, none, v, u) > 30;
+      for (int v = top; v <= bottom; ++v)
+        for (int u = left; u <= right; ++u) covered += difference(marked, none, v, u) > 30;
       EXPECT_EQ(covered, 0) << at;
     }
   }
