@@ -195,6 +195,7 @@ Bearings find_bearings(const FilmScene& scene, const FreeFall& fall, const Timel
 MotionModel model_of(const FilmScene& scene, double turn, const Bearings& bearings) {
   MotionModel model;
   model.turn = turn;
+  if (scene.from_afar) model.shell = scene.radius;
   const double fps = bearings.base.frames_per_second.value;
   if (std::isnan(fps) || std::isnan(scene.metres)) return model;
   const double g = kGravity / scene.metres / (fps * fps), roll = radians(bearings.roll_deg);

@@ -11,6 +11,7 @@ namespace tumble::analysis {
 namespace {
 
 constexpr double kCentrifuging = 0.1;  // share of all sightings
+constexpr double kOnShell = 0.1;       // of a ball's radius
 
 struct Stay {
   double turned = 0;          // by the drum meanwhile [rad]
@@ -52,7 +53,9 @@ bool stands_still(const Path& path, const Stay& stay) {
 }
 
 // A thing that keeps its place on the drum while it goes over the top is part of the drum.
-bool rides_the_drum(const Path& path, const Stay& stay) {
+// But for what lies on the shell: that is a ball wedged between lifters.
+bool rides_the_drum(const Path& path, const Stay& stay, double shell) {
+  if (std::abs(stay.reach + path.radius - shell) < kOnShell * path.radius) return false;
   return stay.turned > radians(200) && stay.wander_on_drum < 0.5 * path.radius;
 }
 
@@ -80,7 +83,7 @@ int link_sightings(std::vector<SeenFrame>& frames, const MotionModel& model) {
     const Stay stay = stay_of(path, frames, model);
     if (!believed(path, frames) || stands_still(path, stay)) continue;
     all += static_cast<double>(path.seen.size());
-    if (rides_the_drum(path, stay)) {
+    if (rides_the_drum(path, stay, model.shell)) {
       ridden += static_cast<double>(path.seen.size());
       riding.push_back(&path);
     } else {

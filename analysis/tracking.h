@@ -36,6 +36,7 @@ struct MotionModel {
   double gravity_x = 0, gravity_y = 0;  // [length/frame^2]; 0 where unknown
   double patience = 3;                  // frames that a path waits for its ball to come back
   double longest_gap = 12;              // frames over which ends of paths are joined afterwards
+  double shell = kNotGiven;  // radius at which balls lie on it, where places are sharp enough to say so; else NaN
 };
 
 // Gives every sighting its path. Balls are carried with the drum, fall freely, or go on as they went; where a path has

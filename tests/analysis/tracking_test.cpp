@@ -142,7 +142,6 @@ TEST(Tracking, VelocityOfAParabolaIsExact) {
   }
 }
 
-// Twenty balls are carried up and fall back, over and over; a bolt goes round with the drum, a lamp stands still.
 TEST(Tracking, BridgesAFlightAlongItsParabola) {
   std::vector<SeenFrame> frames(12);
   for (int f : {2, 8}) {
@@ -168,6 +167,8 @@ TEST(Tracking, BridgesAFlightAlongItsParabola) {
   }
 }
 
+// Twenty balls are carried up and fall back, over and over; a bolt and a wedged ball go round with the drum, a lamp
+// stands still. Only the ball lies on the shell.
 TEST(Tracking, TakesNeitherBoltNorLampForABall) {
   constexpr double kTurn = 0.05;
   std::vector<SeenFrame> frames(140);
@@ -189,14 +190,17 @@ TEST(Tracking, TakesNeitherBoltNorLampForABall) {
     }
     see(0.28 * std::cos(kTurn * t), 0.28 * std::sin(kTurn * t));
     see(-0.05, 0.2);
+    see(-0.29 * std::cos(kTurn * t), -0.29 * std::sin(kTurn * t));
   }
   MotionModel model;
   model.turn = kTurn;
+  model.shell = 0.3;
   link_sightings(frames, model);
   for (const SeenFrame& f : frames) {
     for (std::size_t k = 0; k < 20; ++k) EXPECT_GE(f.balls[k].track, 0);
     EXPECT_EQ(f.balls[20].track, -1);
     EXPECT_EQ(f.balls[21].track, -1);
+    EXPECT_GE(f.balls[22].track, 0);
   }
 }
 
