@@ -1,0 +1,153 @@
+#include "diagnose/evidence.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+#include "core/config.h"
+
+namespace tumble::diagnose {
+namespace {
+
+constexpr double kUsualStrength = 0.7;  // of one who is guilty: standard deviation of the strength
+// Of observers that nobody suspects: no measurement is exact.
+constexpr double kUsualError = 0.05;  // [full strengths]: 0.1 % of scale and clock, 0.1 degrees, 0.2 % of torque
+constexpr int kMostSteps = 40;
+
+struct Problem {
+  std::span<const Measured> measured;
+  std::vector<int> free;
+  Eigen::VectorXd prior_sd, low, high;  // of the free ones
+  Eigen::Index size = 0;                // of all places
+
+  Eigen::VectorXd all(const Eigen::VectorXd& x) const {
+    Eigen::VectorXd p = Eigen::VectorXd::Zero(size);
+    for (std::size_t i = 0; i < free.size(); ++i) p[free[i]] = x[static_cast<Eigen::Index>(i)];
+    return p;
+  }
+};
+
+struct State {
+  double misfit = 0;  // -2 ln of likelihood and prior, but for constants
+  double chi2 = 0;
+  std::vector<double> chi2_of;
+  Eigen::MatrixXd information;
+  Eigen::VectorXd gradient;  // of misfit / 2
+};
+
+State look(const Problem& problem, const Eigen::VectorXd& x) {
+  State s;
+  const auto n = x.size();
+  s.information = problem.prior_sd.cwiseAbs2().cwiseInverse().asDiagonal();
+  s.gradient = s.information * x;
+  s.misfit = x.dot(s.gradient);
+  for (const Measured& m : problem.measured) {
+    const auto expected = m.response->at(problem.all(x));
+    const double variance = m.response->revolutions() / m.revolutions + expected.guess;
+    const Eigen::VectorXd rest = m.seen - expected.mean;
+    Eigen::MatrixXd slope(rest.size(), n);
+    for (Eigen::Index i = 0; i < n; ++i) slope.col(i) = expected.slope.col(problem.free[static_cast<std::size_t>(i)]);
+    const double chi2 = (rest.squaredNorm() + m.outside) / variance;
+    s.chi2 += chi2;
+    s.chi2_of.push_back(chi2);
+    s.misfit += chi2 + double(m.response->numbers()) * std::log(variance);
+    s.information += slope.transpose() * slope / variance;
+    s.gradient -= slope.transpose() * rest / variance;
+  }
+  return s;
+}
+
+// Levenberg and Marquardt within the box.
+State descend(const Problem& problem, Eigen::VectorXd& x) {
+  State here = look(problem, x);
+  double damping = 1e-3;
+  for (int step = 0; step < kMostSteps; ++step) {
+    Eigen::MatrixXd system = here.information;
+    system.diagonal() *= 1 + damping;
+    const Eigen::VectorXd next = (x - system.ldlt().solve(here.gradient)).cwiseMax(problem.low).cwiseMin(problem.high);
+    State there = look(problem, next);
+    if (there.misfit < here.misfit) {
+      const bool done = here.misfit - there.misfit < 1e-6;
+      x = next;
+      here = std::move(there);
+      damping = std::max(1e-9, damping / 5);
+      if (done) break;
+    } else {
+      damping *= 6;
+      if (damping > 1e8) break;
+    }
+  }
+  return here;
+}
+
+double normal_share_below(double z) { return 0.5 * std::erfc(-z / std::sqrt(2.0)); }
+
+}  // namespace
+
+double Explanation::se(int place) const {
+  for (std::size_t i = 0; i < free.size(); ++i)
+    if (free[i] == place) return std::sqrt(covariance(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(i)));
+  return kNotGiven;
+}
+
+Explanation explain(std::span<const Measured> measured, std::span<const Suspect> suspects, std::vector<int> guilty) {
+  const int keys = static_cast<int>(measured.front().response->uncertain());
+  Problem problem{measured, {}, {}, {}, {}, keys + static_cast<Eigen::Index>(suspects.size())};
+  std::vector<double> sd, low, high;
+  const auto add = [&](int place, double prior, double least, double most) {
+    problem.free.push_back(place);
+    sd.push_back(prior);
+    low.push_back(least);
+    high.push_back(most);
+  };
+  for (int k = 0; k < keys; ++k) add(k, 1, -4, 4);
+  std::vector<std::size_t> accused;  // where the guilty stand among the free
+  for (int s = 0; s < static_cast<int>(suspects.size()); ++s) {
+    const bool is_guilty = std::find(guilty.begin(), guilty.end(), s) != guilty.end();
+    const Suspect& suspect = suspects[static_cast<std::size_t>(s)];
+    if (is_guilty) accused.push_back(problem.free.size());
+    if (is_guilty)
+      add(keys + s, kUsualStrength, suspect.low, suspect.high);
+    else if (!suspect.is_simulated())
+      add(keys + s, kUsualError, -4 * kUsualError, 4 * kUsualError);
+  }
+  const auto vector_of = [](const std::vector<double>& v) {
+    return Eigen::VectorXd(Eigen::Map<const Eigen::VectorXd>(v.data(), static_cast<Eigen::Index>(v.size())));
+  };
+  problem.prior_sd = vector_of(sd);
+  problem.low = vector_of(low);
+  problem.high = vector_of(high);
+
+  Explanation best;
+  double least = INFINITY;
+  const std::size_t starts = std::size_t{1} << accused.size();
+  for (std::size_t start = 0; start < starts; ++start) {
+    Eigen::VectorXd x = Eigen::VectorXd::Zero(problem.prior_sd.size());
+    for (std::size_t a = 0; a < accused.size(); ++a) {
+      const auto i = static_cast<Eigen::Index>(accused[a]);
+      const bool other = (start >> a & 1) != 0;
+      x[i] = problem.low[i] < 0 ? (other ? -0.5 : 0.5) : (other ? 0.9 : 0.3);
+    }
+    const State s = descend(problem, x);
+    if (!(s.misfit < least)) continue;
+    least = s.misfit;
+    best.places = problem.all(x);
+    best.covariance = s.information.inverse();
+    best.chi2 = s.chi2;
+    best.chi2_of = s.chi2_of;
+    // Laplace: what is known beforehand against what is left open.
+    best.log_evidence = -0.5 * s.misfit - s.information.llt().matrixLLT().diagonal().array().log().sum() -
+                        problem.prior_sd.array().log().sum();
+    for (const std::size_t a : accused) {  // of one-sided strengths half of the prior is not there
+      const auto i = static_cast<Eigen::Index>(a);
+      if (problem.low[i] < 0) continue;
+      best.log_evidence += std::log(2 * normal_share_below(x[i] / std::sqrt(best.covariance(i, i))));
+    }
+  }
+  best.suspects = std::move(guilty);
+  best.free = problem.free;
+  for (const Measured& m : measured) best.numbers += double(m.response->numbers());
+  return best;
+}
+
+}  // namespace tumble::diagnose

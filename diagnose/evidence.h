@@ -1,0 +1,33 @@
+#pragma once
+#include <Eigen/Core>
+#include <span>
+#include <vector>
+
+#include "diagnose/response.h"
+
+// How well a set of suspects explains what was measured, whatever the uncertain keys are.
+namespace tumble::diagnose {
+
+struct Measured {  // in one condition
+  const Response* response = nullptr;
+  Eigen::VectorXd seen;    // Response::whitened
+  double outside = 0;      // Response::outside
+  double revolutions = 0;  // that were watched
+};
+
+struct Explanation {
+  std::vector<int> suspects;   // none: nothing is hidden
+  Eigen::VectorXd places;      // the likeliest: keys, then strengths of all suspects
+  Eigen::MatrixXd covariance;  // of those in `free`
+  std::vector<int> free;       // which places were free
+  double chi2 = 0, numbers = 0;
+  double log_evidence = 0;
+  std::vector<double> chi2_of;  // each condition's
+
+  double se(int place) const;  // of one of the places; NaN where it was not free
+};
+
+// `suspects`: the mill's, for ranges and kinds. Local minima: tried from both sides and from weak and strong.
+Explanation explain(std::span<const Measured> measured, std::span<const Suspect> suspects, std::vector<int> guilty);
+
+}  // namespace tumble::diagnose

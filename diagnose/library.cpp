@@ -1,0 +1,160 @@
+#include "diagnose/library.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <optional>
+
+#include "analysis/charge_motion.h"
+#include "core/error.h"
+#include "core/experiments.h"
+#include "core/mill_shape.h"
+#include "core/motion_quantities.h"
+#include "core/random.h"
+#include "core/units.h"
+#include "diagnose/design.h"
+#include "diagnose/free_flight.h"
+#include "sim/simulator.h"
+
+namespace tumble::diagnose {
+namespace {
+
+constexpr double kWidest = 2.3;     // standard deviations of what is uncertain, both ways
+constexpr double kRate = 250;       // frames per second of the simulations: the shortest span is one frame
+constexpr std::size_t kBlocks = 5;  // a plan comes in so many equal parts
+
+// All that is summed up of a run.
+class Watcher {
+ public:
+  explicit Watcher(const RunSetup& setup)
+      : setup_(setup), shape_(make_mill_shape(setup.config)), layout_(shape_.lifter_count), measurer_(setup) {
+    double mean = 0;
+    for (const double r : setup.balls.radius) mean += r / double(setup.balls.size());
+    all_.push_back({});
+    for (const Observer& o : observers()) all_.push_back(o);
+    std::vector<View> views;
+    for (const Observer& o : all_)
+      for (const double span : kSpans) views.push_back({span, o});
+    maps_.emplace(layout_, shape_.radius, shape_.tip_radius, mean, views);
+    flights_.emplace(shape_.tip_radius);
+  }
+
+  void add(const Frame& frame) {
+    measurer_.add(frame);
+    std::vector<Sighting> balls(frame.x.size());
+    for (std::size_t i = 0; i < balls.size(); ++i)
+      balls[i] = {static_cast<int>(i), frame.x[i], frame.y[i], setup_.balls.radius[i], frame.spin[i]};
+    flights_->add(frame.time, balls);
+    maps_->add(frame.time, frame.mill_angle, std::move(balls));
+    angle_ = frame.mill_angle - (frames_ == 0 ? (first_ = frame.mill_angle) : first_);
+    ++frames_;
+  }
+
+  void finish(SignatureRun& run) {
+    const ChargeMotion motion = measurer_.finish();
+    const auto sights = finish_sights(motion);
+    run.seen = sights[0];
+    std::copy(sights.begin() + 1, sights.end(), run.misseen.begin());
+    run.revolutions = std::abs(angle_) / (2 * kPi);
+  }
+
+ private:
+  std::vector<Sight> finish_sights(const ChargeMotion& motion) {
+    std::vector<Sight> sights;
+    for (std::size_t o = 0; o < all_.size(); ++o) {
+      Sight sight;
+      for (std::size_t s = 0; s < kSpans.size(); ++s) {
+        Observation& seen = sight.by_span[s];
+        maps_->finish(o * kSpans.size() + s, seen);
+        flights_->finish(layout_, all_[o], seen);
+        seen.value[layout_.first(Observable::kTorque)] = motion.torque.value;
+        seen.value[layout_.first(Observable::kClosure)] = motion.torque.value - motion.torque_closure.value;
+        const double turned = all_[o].rotation * 180 / kPi;
+        for (std::size_t k = 2; k < kScalarData.size(); ++k)
+          seen.value[layout_.first(Observable::kAngles) + k - 2] = angle_of(motion, kScalarData[k].name) + turned;
+      }
+      sights.push_back(std::move(sight));
+    }
+    return sights;
+  }
+
+  static double angle_of(const ChargeMotion& motion, const std::string& name) {
+    for (const MotionQuantity& q : kMotionQuantities)
+      if (name == q.name) return (motion.*q.of).value;
+    return kNotGiven;
+  }
+
+  RunSetup setup_;
+  MillShape shape_;
+  ObservationLayout layout_;
+  analysis::FrameMeasurer measurer_;
+  std::vector<Observer> all_;    // first the one who does not err
+  std::optional<MapSums> maps_;  // views by observer, then span
+  std::optional<FreeFlights> flights_;
+  double first_ = 0, angle_ = 0;
+  std::size_t frames_ = 0;
+};
+
+}  // namespace
+
+std::array<Observer, kObservers> observers() {
+  std::array<Observer, kObservers> list;
+  std::size_t at = 0;
+  for (const Suspect& s : suspects_of({})) {
+    const Observer& o = s.observer;
+    if (o.scale == 0 && o.rotation == 0 && o.clock == 0) continue;
+    for (const double half : {-0.5, 0.5}) list[at++] = {half * o.scale, half * o.rotation, half * o.clock};
+  }
+  return list;
+}
+
+SignatureRun run_signature(const Config& wanted, const Progress& progress) {
+  SignatureRun run;
+  Config config = wanted;
+  config.run.frames_per_second = kRate;
+  std::unique_ptr<Watcher> watcher;
+  sim::RunSink sink;
+  sink.setup = [&](const RunSetup& setup) { watcher = std::make_unique<Watcher>(setup); };
+  sink.frame = [&](const Frame& frame) { watcher->add(frame); };
+  sink.progress = progress;
+  try {
+    sim::simulate(config, sink);
+    watcher->finish(run);
+  } catch (const Interrupted&) {
+    throw;
+  } catch (const Error& e) {
+    run.error = e.what();
+  }
+  return run;
+}
+
+std::vector<SignatureAsked> plan_signatures(const SignaturePlan& plan) {
+  std::vector<SignatureAsked> asked;
+  std::uint64_t seed = plan.seed * 1'000'000;
+  for (std::size_t block = 0; block < kBlocks; ++block)
+    for (std::size_t c = 0; c < plan.conditions; ++c) {
+      Random random(plan.seed * 7919 + block * 101 + c);
+      const auto part = [&](std::size_t runs) { return (block + 1) * runs / kBlocks - block * runs / kBlocks; };
+      std::vector<SignatureAsked> some;
+      for (std::size_t k = 0; k < part(plan.plain_runs); ++k) some.push_back({c, {}, -1, 0, 0});
+      for (std::size_t s = 0; s < plan.suspects[c].size(); ++s) {
+        const Suspect& suspect = plan.suspects[c][s];
+        if (!suspect.is_simulated()) continue;
+        const std::size_t runs = part(plan.suspect_runs);
+        for (std::size_t k = 0; k < runs; ++k) {  // strengths spread evenly over all blocks
+          const double share = (double(block * plan.suspect_runs / kBlocks + k) * 0.6180339887498949);
+          const double strength = suspect.low + (suspect.high - suspect.low) * (share - std::floor(share));
+          some.push_back({c, {}, static_cast<int>(s), strength, 0});
+        }
+      }
+      const auto places = latin_hypercube(some.size(), std::max<std::size_t>(1, plan.uncertain), random);
+      for (std::size_t i = 0; i < some.size(); ++i) {
+        for (std::size_t k = 0; k < plan.uncertain; ++k) some[i].uncertain.push_back(kWidest * (2 * places[i][k] - 1));
+        some[i].seed = ++seed;
+        asked.push_back(some[i]);
+      }
+    }
+  return asked;
+}
+
+}  // namespace tumble::diagnose

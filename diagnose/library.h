@@ -1,0 +1,60 @@
+#pragma once
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "core/config.h"
+#include "core/progress.h"
+#include "diagnose/observation.h"
+#include "diagnose/suspects.h"
+
+// What a mill looks like under every suspect: many short simulations with the uncertain keys drawn at random, each with
+// one suspect at a random strength or none, and what an observer who errs makes of them.
+namespace tumble::diagnose {
+
+inline constexpr std::array kSpans{0.004, 0.008, 0.016, 0.032};  // before and after a frame, of velocities [s]
+
+// The observers who err, at half their full strengths both ways: in pairs, the order of the artefacts in suspects_of.
+inline constexpr std::size_t kObservers = 6;
+std::array<Observer, kObservers> observers();
+
+struct Sight {  // of one run by one observer
+  std::array<Observation, kSpans.size()> by_span;
+};
+
+struct SignatureRun {
+  std::string error;  // why it failed; then the rest is empty
+  std::size_t condition = 0;
+  std::vector<double> uncertain;  // each key's distance from MILL.toml's value, in its standard deviations
+  int suspect = -1;               // of the condition's suspects; -1: none
+  double strength = 0;
+  std::uint64_t seed = 0;
+  double revolutions = 0;  // that were looked at
+  Sight seen;
+  std::array<Sight, kObservers> misseen;
+};
+
+// One run, looked at while it goes on.
+SignatureRun run_signature(const Config& config, const Progress& progress = {});
+
+struct SignaturePlan {
+  std::size_t conditions = 0;
+  std::size_t uncertain = 0;                       // keys
+  std::vector<std::vector<Suspect>> suspects;      // by condition
+  std::size_t plain_runs = 60, suspect_runs = 25;  // of each condition; of each simulated suspect there
+  std::uint64_t seed = 1;
+};
+
+struct SignatureAsked {
+  std::size_t condition = 0;
+  std::vector<double> uncertain;
+  int suspect = -1;
+  double strength = 0;
+  std::uint64_t seed = 0;
+};
+// What is to be simulated, in an order in which any first part is a library of its own. Deterministic.
+std::vector<SignatureAsked> plan_signatures(const SignaturePlan& plan);
+
+}  // namespace tumble::diagnose

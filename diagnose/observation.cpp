@@ -1,0 +1,225 @@
+#include "diagnose/observation.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/experiments.h"
+#include "core/units.h"
+
+namespace tumble::diagnose {
+namespace {
+
+constexpr int kUsualPockets = 18;
+constexpr std::size_t kAngleCount = 6, kFlightCount = 4;
+constexpr double kReach = 1.04;  // [R]: cells up to here may hold a ball's share
+
+}  // namespace
+
+const char* name_of(Observable observable) {
+  switch (observable) {
+    case Observable::kTorque:
+      return "torque";
+    case Observable::kClosure:
+      return "torque_closure";
+    case Observable::kAngles:
+      return "toe_and_shoulder";
+    case Observable::kOccupancy:
+      return "occupancy";
+    case Observable::kMomentum:
+      return "velocity";
+    case Observable::kSpin:
+      return "spin";
+    case Observable::kPockets:
+      return "pockets";
+    case Observable::kFlight:
+      break;
+  }
+  return "flight";
+}
+
+ObservationLayout::ObservationLayout(int lifter_count) : pockets(lifter_count > 0 ? lifter_count : kUsualPockets) {
+  cell_at.assign(kCells * kCells, -1);
+  for (int v = 0; v < kCells; ++v)
+    for (int u = 0; u < kCells; ++u) {
+      const Cell cell{(u + 0.5) * 2 / kCells - 1, (v + 0.5) * 2 / kCells - 1};
+      if (std::hypot(cell.x, cell.y) > kReach) continue;
+      cell_at[static_cast<std::size_t>(v * kCells + u)] = static_cast<int>(cells.size());
+      cells.push_back(cell);
+    }
+}
+
+std::size_t ObservationLayout::count(Observable observable) const {
+  switch (observable) {
+    case Observable::kTorque:
+    case Observable::kClosure:
+      return 1;
+    case Observable::kAngles:
+      return kAngleCount;
+    case Observable::kOccupancy:
+    case Observable::kSpin:
+      return cells.size();
+    case Observable::kMomentum:
+      return 2 * cells.size();
+    case Observable::kPockets:
+      return 2 * static_cast<std::size_t>(pockets);
+    case Observable::kFlight:
+      break;
+  }
+  return kFlightCount;
+}
+
+std::size_t ObservationLayout::first(Observable observable) const {
+  std::size_t at = 0;
+  for (const Observable o : kObservables) {
+    if (o == observable) break;
+    at += count(o);
+  }
+  return at;
+}
+
+std::size_t ObservationLayout::size() const { return first(kObservables.back()) + count(kObservables.back()); }
+
+Observable ObservationLayout::observable_of(std::size_t i) const {
+  Observable found = kObservables.front();
+  for (const Observable o : kObservables)
+    if (i >= first(o)) found = o;
+  return found;
+}
+
+std::string ObservationLayout::region(std::size_t i) const {
+  const Observable o = observable_of(i);
+  const std::size_t k = i - first(o);
+  switch (o) {
+    case Observable::kAngles:
+      return kScalarData[2 + k].name;
+    case Observable::kOccupancy:
+    case Observable::kMomentum:
+    case Observable::kSpin: {
+      const Cell& c = cells[k % cells.size()];
+      const double deg = std::atan2(c.y, c.x) * 180 / kPi;
+      const std::string place = fmt::format("at {:.0f} deg, {:.2f} R", deg < 0 ? deg + 360 : deg, std::hypot(c.x, c.y));
+      return o == Observable::kMomentum ? (k < cells.size() ? "x " : "y ") + place : place;
+    }
+    case Observable::kPockets:
+      return fmt::format("{} lifter {}", k < count(o) / 2 ? "balls before" : "slip before", k % (count(o) / 2));
+    case Observable::kFlight:
+      return std::array{"x", "y", "x by velocity", "y by velocity"}[k];
+    default:
+      return "mill";
+  }
+}
+
+MapSums::MapSums(const ObservationLayout& layout, double mill_radius, double tip_radius, double mean_radius,
+                 std::vector<View> views)
+    : layout_(&layout), radius_(mill_radius), ring_(tip_radius - mean_radius) {
+  for (const View& v : views) {
+    const double longer = 1 + v.observer.scale, reach = v.span / (1 + v.observer.clock);
+    views_.push_back({v, std::cos(v.observer.rotation) * longer, std::sin(v.observer.rotation) * longer, reach,
+                      std::vector<double>(layout.size(), 0.0)});
+    longest_ = std::max(longest_, reach);
+  }
+}
+
+void MapSums::add(double time, double mill_angle, std::vector<Sighting> balls) {
+  window_.push_back({time, mill_angle, std::move(balls)});
+  const double tiny = 1e-9 * std::max(1.0, time);
+  while (window_.size() >= 3 && window_.back().time + tiny >= window_.front().time + 2 * longest_) {
+    std::size_t middle = 1;
+    while (window_[middle].time + tiny < window_.front().time + longest_) ++middle;
+    if (window_[middle].time + longest_ > window_.back().time + tiny) break;
+    for (Sums& sums : views_) deposit(sums, window_[middle]);
+    window_.pop_front();
+  }
+}
+
+// Straight between two frames; only balls that both show.
+double MapSums::places_at(double time, std::vector<Place>& places) const {
+  std::size_t next = 1;
+  while (next + 1 < window_.size() && window_[next].time < time) ++next;
+  const Seen &a = window_[next - 1], &b = window_[next];
+  const double share = std::clamp((time - a.time) / (b.time - a.time), 0.0, 1.0);
+  places.clear();
+  for (std::size_t i = 0, j = 0; i < a.balls.size() && j < b.balls.size();) {
+    const Sighting &p = a.balls[i], &q = b.balls[j];
+    if (p.ball == q.ball) places.push_back({p.ball, p.x + share * (q.x - p.x), p.y + share * (q.y - p.y)});
+    i += p.ball <= q.ball;
+    j += q.ball <= p.ball;
+  }
+  return a.mill_angle + share * (b.mill_angle - a.mill_angle);
+}
+
+void MapSums::deposit(Sums& sums, const Seen& at) {
+  const double twice = 2 * sums.view.span;
+  const double turned_from = places_at(at.time - sums.reach, before_),
+               turned_to = places_at(at.time + sums.reach, after_);
+  const double mill_speed = (turned_to - turned_from) / twice;
+  ++sums.frames;
+  const std::size_t cells = layout_->cells.size(), pocket_count = static_cast<std::size_t>(layout_->pockets);
+  double* const occupancy = sums.values.data() + layout_->first(Observable::kOccupancy);
+  double* const momentum = sums.values.data() + layout_->first(Observable::kMomentum);
+  double* const spin = sums.values.data() + layout_->first(Observable::kSpin);
+  double* const pockets = sums.values.data() + layout_->first(Observable::kPockets);
+  const double cell = 2 * radius_ / kCells, per_cell = 1 / (cell * cell);
+  const double c = sums.cosine, sn = sums.sine;
+  std::size_t i = 0, j = 0;
+  for (const Sighting& s : at.balls) {
+    while (i < before_.size() && before_[i].ball < s.ball) ++i;
+    while (j < after_.size() && after_[j].ball < s.ball) ++j;
+    if (i == before_.size() || j == after_.size()) break;
+    if (before_[i].ball != s.ball || after_[j].ball != s.ball) continue;
+    const double dx = (after_[j].x - before_[i].x) / twice, dy = (after_[j].y - before_[i].y) / twice;
+    const double x = c * s.x - sn * s.y, y = sn * s.x + c * s.y, vx = c * dx - sn * dy, vy = sn * dx + c * dy;
+    const double area = kPi * s.radius * s.radius * per_cell, turns = s.spin / (1 + sums.view.observer.clock);
+    const bool is_told = !std::isnan(turns);
+    ++sums.balls;
+    sums.spins += is_told;
+    // To the four cells around, so that no number jumps when a ball crosses an edge.
+    const double u = (x / radius_ + 1) * kCells / 2 - 0.5, v = (y / radius_ + 1) * kCells / 2 - 0.5;
+    const int u0 = static_cast<int>(std::floor(u)), v0 = static_cast<int>(std::floor(v));
+    std::array<std::size_t, 4> near{};
+    std::array<double, 4> shares{};
+    std::size_t known = 0;
+    double sum = 0;
+    for (int dv = 0; dv < 2; ++dv)
+      for (int du = 0; du < 2; ++du) {
+        const int cu = u0 + du, cv = v0 + dv;
+        if (cu < 0 || cv < 0 || cu >= kCells || cv >= kCells) continue;
+        const int index = layout_->cell_at[static_cast<std::size_t>(cv * kCells + cu)];
+        if (index < 0) continue;
+        near[known] = static_cast<std::size_t>(index);
+        sum += shares[known++] = (du ? u - u0 : 1 - (u - u0)) * (dv ? v - v0 : 1 - (v - v0));
+      }
+    for (std::size_t n = 0; n < known && sum > 0; ++n) {
+      const double share = area * shares[n] / sum;
+      occupancy[near[n]] += share;
+      momentum[near[n]] += share * vx;
+      momentum[cells + near[n]] += share * vy;
+      if (is_told) spin[near[n]] += share * turns;
+    }
+    const double r = std::hypot(x, y);
+    if (r < ring_) continue;
+    const double turn = (std::atan2(y, x) - at.mill_angle) / (2 * kPi) * double(pocket_count);
+    const double rounds = std::floor(std::floor(turn) / double(pocket_count));
+    const auto pocket = static_cast<std::size_t>(std::floor(turn) - rounds * double(pocket_count));
+    pockets[pocket] += area;
+    pockets[pocket_count + pocket] += area * ((x * vy - y * vx) / r - mill_speed * r);
+  }
+}
+
+void MapSums::finish(std::size_t view, Observation& into) const {
+  const Sums& sums = views_[view];
+  into.value.resize(layout_->size(), kNotGiven);
+  into.noise.resize(layout_->size(), 0);
+  if (sums.frames == 0) return;
+  for (const Observable o : {Observable::kOccupancy, Observable::kMomentum, Observable::kSpin, Observable::kPockets}) {
+    double per = 1 / double(sums.frames);
+    // Where only some balls' spins are told, they stand for all.
+    if (o == Observable::kSpin) per *= sums.spins > 0 ? double(sums.balls) / double(sums.spins) : kNotGiven;
+    for (std::size_t k = 0; k < layout_->count(o); ++k)
+      into.value[layout_->first(o) + k] = sums.values[layout_->first(o) + k] * per;
+  }
+}
+
+}  // namespace tumble::diagnose

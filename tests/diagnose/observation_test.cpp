@@ -1,0 +1,130 @@
+#include "diagnose/observation.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numeric>
+
+#include "core/random.h"
+#include "core/units.h"
+#include "diagnose/free_flight.h"
+
+namespace tumble::diagnose {
+namespace {
+
+constexpr double kRadius = 0.3, kTip = 0.28, kBall = 0.012, kOmega = 4;
+
+// Balls that are carried with the drum as if glued to it.
+MapSums carried(const ObservationLayout& layout, const std::vector<View>& views, double lost = 0) {
+  MapSums sums(layout, kRadius, kTip, kBall, views);
+  Random random(3);
+  for (int frame = 0; frame < 400; ++frame) {
+    const double time = frame / 250.0, angle = kOmega * time;
+    std::vector<Sighting> balls;
+    for (int i = 0; i < 40; ++i) {
+      const double r = 0.05 + 0.006 * i, a = 2.4 * i + angle;
+      if (random.uniform() < lost) continue;
+      balls.push_back({i, r * std::cos(a), r * std::sin(a), kBall, kOmega});
+    }
+    sums.add(time, angle, balls);
+  }
+  return sums;
+}
+
+double sum_of(const Observation& seen, const ObservationLayout& layout, Observable o) {
+  const auto first = seen.value.begin() + static_cast<long>(layout.first(o));
+  return std::accumulate(first, first + static_cast<long>(layout.count(o)), 0.0);
+}
+
+TEST(Observation, AreasAndSpinsAddUpToTheCharge) {
+  const ObservationLayout layout(18);
+  Observation seen;
+  carried(layout, {{0.004, {}}}).finish(0, seen);
+  const double cell = 2 * kRadius / kCells, area = 40 * kPi * kBall * kBall / (cell * cell);
+  EXPECT_NEAR(sum_of(seen, layout, Observable::kOccupancy), area, 1e-9 * area);
+  EXPECT_NEAR(sum_of(seen, layout, Observable::kSpin), kOmega * area, 1e-9 * area);
+}
+
+TEST(Observation, CarriedBallsMoveAsTheDrumAndNotAgainstIt) {
+  const ObservationLayout layout(18);
+  Observation seen;
+  carried(layout, {{0.004, {}}}).finish(0, seen);
+  const std::size_t cells = layout.cells.size();
+  for (std::size_t k = 0; k < cells; ++k) {
+    const double area = seen.value[layout.first(Observable::kOccupancy) + k];
+    if (area < 0.05) continue;
+    // Shares of balls that are up to a cell away: the mean place is within half a cell of the middle.
+    const double tolerance = 0.5 * kOmega * 2 * kRadius / kCells;
+    EXPECT_NEAR(seen.value[layout.first(Observable::kMomentum) + k] / area, -kOmega * kRadius * layout.cells[k].y,
+                tolerance);
+    EXPECT_NEAR(seen.value[layout.first(Observable::kMomentum) + cells + k] / area,
+                kOmega * kRadius * layout.cells[k].x, tolerance);
+  }
+  const std::size_t pockets = layout.first(Observable::kPockets);
+  double filled = 0;
+  for (std::size_t p = 0; p < 18; ++p) {
+    filled += seen.value[pockets + p] > 0;
+    EXPECT_NEAR(seen.value[pockets + 18 + p], 0, 1e-3);  // a chord is shorter than its arc
+  }
+  EXPECT_GT(filled, 2);
+}
+
+TEST(Observation, ObserversErrAsTheySay) {
+  const ObservationLayout layout(18);
+  const double quarter = kPi / 2;
+  const MapSums sums = carried(layout, {{0.004, {}}, {0.004, {0, quarter, 0}}, {0.004, {0, 0, 0.02}}});
+  Observation right, turned, slow;
+  sums.finish(0, right);
+  sums.finish(1, turned);
+  sums.finish(2, slow);
+  const std::size_t occupancy = layout.first(Observable::kOccupancy), momentum = layout.first(Observable::kMomentum);
+  for (int v = 0; v < kCells; ++v)
+    for (int u = 0; u < kCells; ++u) {  // a quarter turn carries cells into cells
+      const int from = layout.cell_at[static_cast<std::size_t>(v * kCells + u)],
+                to = layout.cell_at[static_cast<std::size_t>(u * kCells + kCells - 1 - v)];
+      if (from < 0) continue;
+      EXPECT_NEAR(turned.value[occupancy + static_cast<std::size_t>(to)],
+                  right.value[occupancy + static_cast<std::size_t>(from)], 1e-9);
+    }
+  // Who takes times to be 2 % longer than they are sees everything 2 % slower.
+  for (std::size_t k = 0; k < layout.count(Observable::kMomentum); ++k)
+    EXPECT_NEAR(slow.value[momentum + k] * 1.02, right.value[momentum + k], 1e-3);
+}
+
+TEST(Observation, LostBallsDoNotBlurVelocities) {
+  const ObservationLayout layout(18);
+  Observation all, some;
+  carried(layout, {{0.004, {}}}).finish(0, all);
+  carried(layout, {{0.004, {}}}, 0.1).finish(0, some);
+  const double share = sum_of(some, layout, Observable::kOccupancy) / sum_of(all, layout, Observable::kOccupancy);
+  EXPECT_NEAR(share, std::pow(0.9, 3), 0.02);  // seen before, at and after
+  EXPECT_NEAR(sum_of(some, layout, Observable::kSpin) / sum_of(all, layout, Observable::kSpin), share, 1e-9);
+}
+
+// Thrown balls with linear drag, some of which fly into another that hangs in the air.
+TEST(FreeFlights, GiveGravityAndDrag) {
+  constexpr double kDrag = 0.8;  // [1/s]
+  const ObservationLayout layout(18);
+  FreeFlights flights(kTip);
+  for (int throws = 0; throws < 40; ++throws) {
+    const double vx = -1 + 0.05 * throws, vy = 0.6 + 0.02 * throws;
+    for (int frame = 0; frame < 30; ++frame) {
+      const double t = frame / 250.0, lag = (1 - std::exp(-kDrag * t)) / kDrag;
+      const double x = vx * lag, y = -kGravity / kDrag * t + (vy + kGravity / kDrag) * lag;
+      // The hanging one is not free, nor is whoever is near it.
+      flights.add(throws + t, std::vector<Sighting>{{0, x, y, kBall}, {1, 0.05, kTip - kBall, kBall}});
+    }
+  }
+  Observation seen, slow;
+  flights.finish(layout, {}, seen);
+  const std::size_t f = layout.first(Observable::kFlight);
+  EXPECT_NEAR(seen.value[f], 0, 0.01);
+  EXPECT_NEAR(seen.value[f + 1], -kGravity, 0.01);
+  EXPECT_NEAR(seen.value[f + 2], -kDrag, 0.01);
+  EXPECT_NEAR(seen.value[f + 3], -kDrag, 0.01);
+  flights.finish(layout, {0, 0, 0.02}, slow);
+  EXPECT_NEAR(slow.value[f + 1], -kGravity / 1.02 / 1.02, 0.01);
+}
+
+}  // namespace
+}  // namespace tumble::diagnose
