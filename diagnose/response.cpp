@@ -82,16 +82,22 @@ Response::Response(const std::vector<const SignatureRun*>& runs, const std::vect
 
   Eigen::MatrixXd rest = seen;
   for (std::size_t r = 0; r < runs.size(); ++r) {
-    Eigen::VectorXd places = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(d + suspects.size()));
-    for (std::size_t k = 0; k < d; ++k) places[static_cast<Eigen::Index>(k)] = runs[r]->uncertain[k];
-    if (runs[r]->suspect >= 0) places[static_cast<Eigen::Index>(d) + runs[r]->suspect] = runs[r]->strength;
-    const Eigen::VectorXd b = basis(places), simulated = b.head(static_cast<Eigen::Index>(simulated_terms_));
+    const Eigen::VectorXd b = basis(places_of(*runs[r])),
+                          simulated = b.head(static_cast<Eigen::Index>(simulated_terms_));
     // The fit bends towards each run, the more the fewer there are like it.
     const double own_share = std::min(simulated.dot(information_ * simulated), kMostOwnShare);
     rest.row(static_cast<Eigen::Index>(r)) -= (b.transpose() * coefficients_).eval();
     rest.row(static_cast<Eigen::Index>(r)) /= std::sqrt(1 - own_share);
   }
   whiten(rest, noise);
+}
+
+Eigen::VectorXd Response::places_of(const SignatureRun& run) const {
+  const auto d = static_cast<Eigen::Index>(uncertain_);
+  Eigen::VectorXd places = Eigen::VectorXd::Zero(d + static_cast<Eigen::Index>(terms_of_.size()));
+  for (Eigen::Index k = 0; k < d; ++k) places[k] = run.uncertain[static_cast<std::size_t>(k)];
+  if (run.suspect >= 0) places[d + run.suspect] = run.strength;
+  return places;
 }
 
 // 1, the keys, their products; of each suspect its strength, its square, its products with the keys.
@@ -142,11 +148,7 @@ void Response::fit(const std::vector<const SignatureRun*>& runs, const Eigen::Ma
              d = static_cast<Eigen::Index>(uncertain_);
   Eigen::MatrixXd design(n, t);
   for (Eigen::Index r = 0; r < n; ++r) {
-    const SignatureRun& run = *runs[static_cast<std::size_t>(r)];
-    Eigen::VectorXd places = Eigen::VectorXd::Zero(d + static_cast<Eigen::Index>(terms_of_.size()));
-    for (Eigen::Index k = 0; k < d; ++k) places[k] = run.uncertain[static_cast<std::size_t>(k)];
-    if (run.suspect >= 0) places[d + run.suspect] = run.strength;
-    design.row(r) = basis(places).head(t);
+    design.row(r) = basis(places_of(*runs[static_cast<std::size_t>(r)])).head(t);
   }
   Eigen::VectorXd precision = Eigen::VectorXd::Constant(t, 1 / (kCurved * kCurved));
   precision[0] = 0;
@@ -223,17 +225,19 @@ Response::Expected Response::at(const Eigen::VectorXd& places) const {
   return {within_ * b, within_ * basis_slope(places), simulated.dot(information_ * simulated)};
 }
 
-Eigen::VectorXd Response::whitened(const std::vector<double>& observation) const {
+Eigen::VectorXd Response::white(const std::vector<double>& observation) const {
   Eigen::VectorXd y(static_cast<Eigen::Index>(chosen_.size()));
   for (std::size_t i = 0; i < chosen_.size(); ++i) y[static_cast<Eigen::Index>(i)] = observation[chosen_[i]];
-  return span_.transpose() * lower_.triangularView<Eigen::Lower>().solve(y);
+  return lower_.triangularView<Eigen::Lower>().solve(y);
+}
+
+Eigen::VectorXd Response::whitened(const std::vector<double>& observation) const {
+  return span_.transpose() * white(observation);
 }
 
 double Response::outside(const std::vector<double>& observation) const {
-  Eigen::VectorXd y(static_cast<Eigen::Index>(chosen_.size()));
-  for (std::size_t i = 0; i < chosen_.size(); ++i) y[static_cast<Eigen::Index>(i)] = observation[chosen_[i]];
-  const Eigen::VectorXd white = lower_.triangularView<Eigen::Lower>().solve(y);
-  return std::max(0.0, white.squaredNorm() - (span_.transpose() * white).squaredNorm());
+  const Eigen::VectorXd all = white(observation);
+  return std::max(0.0, all.squaredNorm() - (span_.transpose() * all).squaredNorm());
 }
 
 std::vector<double> Response::mean_observation(const Eigen::VectorXd& places) const {

@@ -40,6 +40,8 @@ class Response {
   std::vector<double> scatter() const;
 
  private:
+  Eigen::VectorXd places_of(const SignatureRun& run) const;
+  Eigen::VectorXd white(const std::vector<double>& observation) const;
   Eigen::VectorXd basis(const Eigen::VectorXd& places) const;
   Eigen::MatrixXd basis_slope(const Eigen::VectorXd& places) const;
   void fit(const std::vector<const SignatureRun*>& runs, const Eigen::MatrixXd& seen);
