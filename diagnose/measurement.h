@@ -1,0 +1,34 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "core/charge_motion.h"
+#include "core/config.h"
+#include "core/experiments.h"
+#include "diagnose/observation.h"
+
+// What one experiment brought, read and checked, ready to be compared with simulations.
+namespace tumble::diagnose {
+
+struct SeenFrame {                // balls seen at one moment, by number
+  double time = 0;                // [s], grows
+  double mill_angle = kNotGiven;  // [rad], unwrapped; NaN where nothing tells it
+  std::vector<Sighting> balls;
+};
+
+struct TorqueSample {
+  double time = 0;    // [s]
+  double torque = 0;  // [N m] of one slice
+};
+
+struct Measurement {
+  Experiment experiment;          // name, place, hold_out, numbers (filled in from the files where those bring them)
+  Config config;                  // the mill as MILL.toml and the experiment's `set` have it
+  std::vector<SeenFrame> frames;  // of film, tracks or motion file; empty without
+  bool is_film = false;           // frames were found in pictures: see motion
+  ChargeMotion motion;            // of film or motion file: what the pictures tell of circle, rates, repeats
+  std::vector<TorqueSample> torque_series;  // empty without
+  double revolutions = 0;                   // of the mill that frames or, without, the torque series cover; 0 without
+};
+
+}  // namespace tumble::diagnose
