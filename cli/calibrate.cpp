@@ -8,6 +8,7 @@
 #include "cli/vary.h"
 #include "cli/verbs.h"
 #include "core/error.h"
+#include "core/fingerprint.h"
 #include "core/parallel_for.h"
 #include "core/version.h"
 #include "diagnose/calibrate.h"
@@ -113,9 +114,7 @@ std::string definition_of(const Config& mill, const diagnose::CalibrationRequest
     for (const auto& [key, value] : e.sets) text += key + "=" + value + "\n";
     for (const ScalarDatum& d : kScalarData) text += fmt::format("{} {}\n", (e.*d.measured).value, (e.*d.measured).se);
   }
-  std::uint64_t hash = 0xcbf29ce484222325ull;  // FNV-1a
-  for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3ull;
-  return fmt::format("{:016x}", hash);
+  return fmt::format("{:016x}", fingerprint(text));
 }
 
 void check_outputs(const Options& o, const fs::path& journal, const std::vector<fs::path>& files) {

@@ -1,13 +1,12 @@
 #include "diagnose/campaign.h"
 
-#include <atomic>
 #include <mutex>
 #include <numeric>
 #include <optional>
 
 #include "analysis/charge_motion.h"
 #include "core/error.h"
-#include "core/parallel_for.h"
+#include "diagnose/in_turns.h"
 #include "sim/simulator.h"
 
 namespace tumble::diagnose {
@@ -15,24 +14,6 @@ namespace {
 
 double energy(const Observables& o) { return o.kinetic + o.potential + o.elastic; }
 double lost(const Observables& o) { return std::accumulate(o.dissipation.begin(), o.dissipation.end(), 0.0); }
-
-// Share of each run that is done, and of the whole.
-class Shares {
- public:
-  Shares(std::size_t count, const Progress& progress) : count_(double(count)), progress_(progress) {}
-
-  // One run got on from share `from` to share `to`.
-  void advance(double from, double to) {
-    const std::lock_guard lock(mutex_);
-    done_ += to - from;
-    report(progress_, done_ / count_);
-  }
-
- private:
-  double count_, done_ = 0;
-  const Progress& progress_;
-  std::mutex mutex_;
-};
 
 }  // namespace
 
@@ -73,31 +54,17 @@ RunOutcome run_once(const Config& config, const Progress& progress) {
 std::vector<RunOutcome> run_campaign(std::size_t count, const std::function<Config(std::size_t)>& config_of,
                                      const CampaignSink& sink) {
   std::vector<RunOutcome> outcomes(count);
-  Shares shares(count, sink.progress);
   std::mutex telling;
-  std::atomic<std::size_t> next = 0;
-  // Each worker takes the next run in turn: runs differ in length, and a fixed division would leave cores idle.
-  const auto work = [&](std::size_t, std::size_t) {
-    for (std::size_t i = next++; i < count; i = next++) {
-      if (sink.known) {
-        const std::lock_guard lock(telling);
-        if (sink.known(i, outcomes[i])) {
-          shares.advance(0, 1);
-          continue;
-        }
-      }
-      const Config config = config_of(i);
-      double done = 0;
-      outcomes[i] = run_once(config, [&](double share) {
-        shares.advance(done, share);
-        done = share;
-      });
-      shares.advance(done, 1);
+  in_turns(count, sink.progress, [&](std::size_t i, const Progress& own) {
+    if (sink.known) {
       const std::lock_guard lock(telling);
-      if (sink.finished) sink.finished(i, config, outcomes[i]);
+      if (sink.known(i, outcomes[i])) return;
     }
-  };
-  parallel_for(std::min(count, static_cast<std::size_t>(thread_limit())), 1, work);
+    const Config config = config_of(i);
+    outcomes[i] = run_once(config, own);
+    const std::lock_guard lock(telling);
+    if (sink.finished) sink.finished(i, config, outcomes[i]);
+  });
   return outcomes;
 }
 

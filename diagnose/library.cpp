@@ -21,7 +21,8 @@ namespace {
 
 constexpr double kWidest = 2.3;     // standard deviations of what is uncertain, both ways
 constexpr double kRate = 250;       // frames per second of the simulations: the shortest span is one frame
-constexpr std::size_t kBlocks = 5;  // a plan comes in so many equal parts
+constexpr double kRevolutions = 8;  // of a run that are looked at
+constexpr std::size_t kPlain = 12, kOfSuspect = 5;  // runs of a block
 
 // All that is summed up of a run.
 class Watcher {
@@ -110,8 +111,8 @@ std::array<Observer, kObservers> observers() {
 
 SignatureRun run_signature(const Config& wanted, const Progress& progress) {
   SignatureRun run;
-  Config config = wanted;
-  config.run.frames_per_second = kRate;
+  Config config = bare(wanted);
+  config.run.seed = wanted.run.seed;
   std::unique_ptr<Watcher> watcher;
   sim::RunSink sink;
   sink.setup = [&](const RunSetup& setup) { watcher = std::make_unique<Watcher>(setup); };
@@ -128,33 +129,63 @@ SignatureRun run_signature(const Config& wanted, const Progress& progress) {
   return run;
 }
 
-std::vector<SignatureAsked> plan_signatures(const SignaturePlan& plan) {
-  std::vector<SignatureAsked> asked;
-  std::uint64_t seed = plan.seed * 1'000'000;
-  for (std::size_t block = 0; block < kBlocks; ++block)
-    for (std::size_t c = 0; c < plan.conditions; ++c) {
-      Random random(plan.seed * 7919 + block * 101 + c);
-      const auto part = [&](std::size_t runs) { return (block + 1) * runs / kBlocks - block * runs / kBlocks; };
-      std::vector<SignatureAsked> some;
-      for (std::size_t k = 0; k < part(plan.plain_runs); ++k) some.push_back({c, {}, -1, 0, 0});
-      for (std::size_t s = 0; s < plan.suspects[c].size(); ++s) {
-        const Suspect& suspect = plan.suspects[c][s];
-        if (!suspect.is_simulated()) continue;
-        const std::size_t runs = part(plan.suspect_runs);
-        for (std::size_t k = 0; k < runs; ++k) {  // strengths spread evenly over all blocks
-          const double share = (double(block * plan.suspect_runs / kBlocks + k) * 0.6180339887498949);
-          const double strength = suspect.low + (suspect.high - suspect.low) * (share - std::floor(share));
-          some.push_back({c, {}, static_cast<int>(s), strength, 0});
-        }
-      }
-      const auto places = latin_hypercube(some.size(), std::max<std::size_t>(1, plan.uncertain), random);
-      for (std::size_t i = 0; i < some.size(); ++i) {
-        for (std::size_t k = 0; k < plan.uncertain; ++k) some[i].uncertain.push_back(kWidest * (2 * places[i][k] - 1));
-        some[i].seed = ++seed;
-        asked.push_back(some[i]);
-      }
+Config bare(Config condition) {
+  condition.run.seed = 1;
+  condition.run.frames_per_second = kRate;
+  condition.run.revolutions = kRevolutions;
+  condition.origin.clear();
+  condition.file.clear();
+  return condition;
+}
+
+std::vector<SignatureAsked> plan_block(std::size_t block, std::size_t uncertain, const std::vector<Suspect>& suspects) {
+  std::vector<SignatureAsked> asked(kPlain);
+  for (std::size_t s = 0; s < suspects.size(); ++s) {
+    const Suspect& suspect = suspects[s];
+    if (!suspect.is_simulated()) continue;
+    for (std::size_t k = 0; k < kOfSuspect; ++k) {  // strengths spread evenly over all blocks
+      const double share = double(block * kOfSuspect + k) * 0.6180339887498949;
+      const double strength = suspect.low + (suspect.high - suspect.low) * (share - std::floor(share));
+      asked.push_back({{}, static_cast<int>(s), strength, 0});
     }
+  }
+  Random random(block + 1);
+  const auto places = latin_hypercube(asked.size(), std::max<std::size_t>(1, uncertain), random);
+  for (std::size_t i = 0; i < asked.size(); ++i) {
+    for (std::size_t k = 0; k < uncertain; ++k) asked[i].uncertain.push_back(kWidest * (2 * places[i][k] - 1));
+    asked[i].seed = 1 + block * asked.size() + i;
+  }
   return asked;
+}
+
+std::vector<float> pack(const SignatureRun& run) {
+  std::vector<float> row;
+  if (!run.error.empty()) return row;
+  row.push_back(static_cast<float>(run.strength));
+  row.push_back(static_cast<float>(run.revolutions));
+  const auto add = [&](const Sight& sight) {
+    for (const Observation& seen : sight.by_span)
+      for (const double v : seen.value) row.push_back(static_cast<float>(v));
+  };
+  add(run.seen);
+  for (const Sight& sight : run.misseen) add(sight);
+  return row;
+}
+
+bool unpack(const std::vector<float>& row, const ObservationLayout& layout, SignatureRun& run) {
+  if (row.size() != 2 + layout.size() * kSpans.size() * (1 + kObservers)) return false;
+  run.strength = row[0];
+  run.revolutions = row[1];
+  auto at = row.begin() + 2;
+  const auto take = [&](Sight& sight) {
+    for (Observation& seen : sight.by_span) {
+      seen.value.assign(at, at + static_cast<std::ptrdiff_t>(layout.size()));
+      at += static_cast<std::ptrdiff_t>(layout.size());
+    }
+  };
+  take(run.seen);
+  for (Sight& sight : run.misseen) take(sight);
+  return true;
 }
 
 }  // namespace tumble::diagnose

@@ -39,22 +39,23 @@ struct SignatureRun {
 // One run, looked at while it goes on.
 SignatureRun run_signature(const Config& config, const Progress& progress = {});
 
-struct SignaturePlan {
-  std::size_t conditions = 0;
-  std::size_t uncertain = 0;                       // keys
-  std::vector<std::vector<Suspect>> suspects;      // by condition
-  std::size_t plain_runs = 60, suspect_runs = 25;  // of each condition; of each simulated suspect there
-  std::uint64_t seed = 1;
-};
-
 struct SignatureAsked {
-  std::size_t condition = 0;
   std::vector<double> uncertain;
   int suspect = -1;
   double strength = 0;
   std::uint64_t seed = 0;
 };
-// What is to be simulated, in an order in which any first part is a library of its own. Deterministic.
-std::vector<SignatureAsked> plan_signatures(const SignaturePlan& plan);
+// What is to be simulated of a condition, block after block: each is a small library of its own, with twelve runs
+// without any suspect and five of each suspect that is simulated; five blocks are a good one. Deterministic.
+std::vector<SignatureAsked> plan_block(std::size_t block, std::size_t uncertain, const std::vector<Suspect>& suspects);
+inline constexpr std::size_t kGoodBlocks = 5;
+
+// For files: all numbers of a run in a row; empty for one that failed. Without the plan's own: condition, uncertain,
+// suspect, seed. `unpack` returns false for a row that is of no such run.
+std::vector<float> pack(const SignatureRun& run);
+bool unpack(const std::vector<float>& row, const ObservationLayout& layout, SignatureRun& run);
+
+// A condition's mill without what does not matter to its library: seed, frame rate, length of the run.
+Config bare(Config condition);
 
 }  // namespace tumble::diagnose

@@ -15,6 +15,20 @@ constexpr int kUsualPockets = 18;
 constexpr std::size_t kAngleCount = 6, kFlightCount = 4;
 constexpr double kReach = 1.04;  // [R]: cells up to here may hold a ball's share
 
+// Finds balls by number in a list that is sorted by it, asked for in that order.
+template <class Place>
+class Follower {
+ public:
+  explicit Follower(const std::vector<Place>& places) : at_(places.begin()), end_(places.end()) {}
+  const Place* find(int ball) {
+    while (at_ != end_ && at_->ball < ball) ++at_;
+    return at_ != end_ && at_->ball == ball ? &*at_ : nullptr;
+  }
+
+ private:
+  typename std::vector<Place>::const_iterator at_, end_;
+};
+
 }  // namespace
 
 const char* name_of(Observable observable) {
@@ -29,6 +43,8 @@ const char* name_of(Observable observable) {
       return "occupancy";
     case Observable::kMomentum:
       return "velocity";
+    case Observable::kAgitation:
+      return "agitation";
     case Observable::kSpin:
       return "spin";
     case Observable::kPockets:
@@ -58,6 +74,7 @@ std::size_t ObservationLayout::count(Observable observable) const {
     case Observable::kAngles:
       return kAngleCount;
     case Observable::kOccupancy:
+    case Observable::kAgitation:
     case Observable::kSpin:
       return cells.size();
     case Observable::kMomentum:
@@ -96,6 +113,7 @@ std::string ObservationLayout::region(std::size_t i) const {
       return kScalarData[2 + k].name;
     case Observable::kOccupancy:
     case Observable::kMomentum:
+    case Observable::kAgitation:
     case Observable::kSpin: {
       const Cell& c = cells[k % cells.size()];
       const double deg = std::atan2(c.y, c.x) * 180 / kPi;
@@ -118,7 +136,7 @@ MapSums::MapSums(const ObservationLayout& layout, double mill_radius, double tip
     const double longer = 1 + v.observer.scale, reach = v.span / (1 + v.observer.clock);
     views_.push_back({v, std::cos(v.observer.rotation) * longer, std::sin(v.observer.rotation) * longer, reach,
                       std::vector<double>(layout.size(), 0.0)});
-    longest_ = std::max(longest_, reach);
+    longest_ = std::max(longest_, 2 * reach);
   }
 }
 
@@ -154,27 +172,35 @@ void MapSums::deposit(Sums& sums, const Seen& at) {
   const double twice = 2 * sums.view.span;
   const double turned_from = places_at(at.time - sums.reach, before_),
                turned_to = places_at(at.time + sums.reach, after_);
+  places_at(at.time - 2 * sums.reach, long_before_);
+  places_at(at.time + 2 * sums.reach, long_after_);
   const double mill_speed = (turned_to - turned_from) / twice;
   ++sums.frames;
   const std::size_t cells = layout_->cells.size(), pocket_count = static_cast<std::size_t>(layout_->pockets);
   double* const occupancy = sums.values.data() + layout_->first(Observable::kOccupancy);
   double* const momentum = sums.values.data() + layout_->first(Observable::kMomentum);
+  double* const agitation = sums.values.data() + layout_->first(Observable::kAgitation);
   double* const spin = sums.values.data() + layout_->first(Observable::kSpin);
   double* const pockets = sums.values.data() + layout_->first(Observable::kPockets);
   const double cell = 2 * radius_ / kCells, per_cell = 1 / (cell * cell);
-  const double c = sums.cosine, sn = sums.sine;
-  std::size_t i = 0, j = 0;
+  const double c = sums.cosine, sn = sums.sine, stretch = (c * c + sn * sn) / (twice * twice);
+  Follower before(before_), after(after_), long_before(long_before_), long_after(long_after_);
   for (const Sighting& s : at.balls) {
-    while (i < before_.size() && before_[i].ball < s.ball) ++i;
-    while (j < after_.size() && after_[j].ball < s.ball) ++j;
-    if (i == before_.size() || j == after_.size()) break;
-    if (before_[i].ball != s.ball || after_[j].ball != s.ball) continue;
-    const double dx = (after_[j].x - before_[i].x) / twice, dy = (after_[j].y - before_[i].y) / twice;
+    const Place *from = before.find(s.ball), *to = after.find(s.ball);
+    const Place *farther_from = long_before.find(s.ball), *farther_to = long_after.find(s.ball);
+    if (from == nullptr || to == nullptr) continue;
+    const double dx = (to->x - from->x) / twice, dy = (to->y - from->y) / twice;
     const double x = c * s.x - sn * s.y, y = sn * s.x + c * s.y, vx = c * dx - sn * dy, vy = sn * dx + c * dy;
     const double area = kPi * s.radius * s.radius * per_cell, turns = s.spin / (1 + sums.view.observer.clock);
     const bool is_told = !std::isnan(turns);
     ++sums.balls;
     sums.spins += is_told;
+    const bool is_followed = farther_from != nullptr && farther_to != nullptr;
+    sums.squares += is_followed;
+    const double square = is_followed ? 4 * stretch *
+                                            ((from->x - farther_from->x) * (farther_to->x - to->x) +
+                                             (from->y - farther_from->y) * (farther_to->y - to->y))
+                                      : 0;
     // To the four cells around, so that no number jumps when a ball crosses an edge.
     const double u = (x / radius_ + 1) * kCells / 2 - 0.5, v = (y / radius_ + 1) * kCells / 2 - 0.5;
     const int u0 = static_cast<int>(std::floor(u)), v0 = static_cast<int>(std::floor(v));
@@ -196,6 +222,7 @@ void MapSums::deposit(Sums& sums, const Seen& at) {
       occupancy[near[n]] += share;
       momentum[near[n]] += share * vx;
       momentum[cells + near[n]] += share * vy;
+      agitation[near[n]] += share * square;
       if (is_told) spin[near[n]] += share * turns;
     }
     const double r = std::hypot(x, y);
@@ -213,10 +240,13 @@ void MapSums::finish(std::size_t view, Observation& into) const {
   into.value.resize(layout_->size(), kNotGiven);
   into.noise.resize(layout_->size(), 0);
   if (sums.frames == 0) return;
-  for (const Observable o : {Observable::kOccupancy, Observable::kMomentum, Observable::kSpin, Observable::kPockets}) {
+  for (const Observable o : {Observable::kOccupancy, Observable::kMomentum, Observable::kAgitation, Observable::kSpin,
+                             Observable::kPockets}) {
     double per = 1 / double(sums.frames);
-    // Where only some balls' spins are told, they stand for all.
-    if (o == Observable::kSpin) per *= sums.spins > 0 ? double(sums.balls) / double(sums.spins) : kNotGiven;
+    // Where only some balls are told of, they stand for all.
+    const std::size_t told = o == Observable::kSpin ? sums.spins : sums.squares;
+    if (o == Observable::kSpin || o == Observable::kAgitation)
+      per *= told > 0 ? double(sums.balls) / double(told) : kNotGiven;
     for (std::size_t k = 0; k < layout_->count(o); ++k)
       into.value[layout_->first(o) + k] = sums.values[layout_->first(o) + k] * per;
   }

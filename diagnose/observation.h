@@ -12,10 +12,10 @@
 namespace tumble::diagnose {
 
 // Kinds of observables, in the order in which they stand in an Observation.
-enum class Observable { kTorque, kClosure, kAngles, kOccupancy, kMomentum, kSpin, kPockets, kFlight };
+enum class Observable { kTorque, kClosure, kAngles, kOccupancy, kMomentum, kAgitation, kSpin, kPockets, kFlight };
 inline constexpr std::array kObservables{Observable::kTorque,    Observable::kClosure,  Observable::kAngles,
-                                         Observable::kOccupancy, Observable::kMomentum, Observable::kSpin,
-                                         Observable::kPockets,   Observable::kFlight};
+                                         Observable::kOccupancy, Observable::kMomentum, Observable::kAgitation,
+                                         Observable::kSpin,      Observable::kPockets,  Observable::kFlight};
 const char* name_of(Observable observable);  // "torque"
 
 inline constexpr int kCells = 12;  // of the lab-fixed maps, along a diameter
@@ -40,7 +40,8 @@ struct ObservationLayout {
 };
 
 // Torque [N m of one slice]; torque less M g x_com [N m]; the six toes and shoulders [deg]; area of balls per cell
-// [cell areas]; the same times velocity x, then y [m/s], and times spin [rad/s]; area of balls in each drum-fixed
+// [cell areas]; the same times velocity x, then y [m/s], times the velocity's square [m2/s2], and times spin [rad/s];
+// area of balls in each drum-fixed
 // pocket [pocket areas], then times their speed against the drum along the shell [m/s]; acceleration of balls in free
 // flight [m/s2]: x, y, and their slopes on velocity. NaN where unknown.
 struct Observation {
@@ -63,7 +64,8 @@ struct Observer {
 };
 
 // How a film looks at the charge. Velocities are displacements over `span` seconds before and after a frame, as a film
-// of that spacing shows them: a film of another rate cannot know more.
+// of that spacing shows them: a film of another rate cannot know more. Their squares are products of the velocities in
+// the span before and in the span after those: whoever tracks the balls errs in neither the same way.
 struct View {
   double span = 0;  // [s]
   Observer observer;
@@ -92,7 +94,7 @@ class MapSums {
     View view;
     double cosine, sine, reach;  // reach: the span in true time [s]
     std::vector<double> values;
-    std::size_t frames = 0, spins = 0, balls = 0;
+    std::size_t frames = 0, spins = 0, squares = 0, balls = 0;
   };
   double places_at(double time, std::vector<Place>& places) const;  // returns the mill's angle
   void deposit(Sums& sums, const Seen& at);
@@ -101,7 +103,7 @@ class MapSums {
   double radius_, ring_, longest_ = 0;
   std::vector<Sums> views_;
   std::deque<Seen> window_;
-  std::vector<Place> before_, after_;
+  std::vector<Place> before_, after_, long_before_, long_after_;
 };
 
 }  // namespace tumble::diagnose

@@ -11,7 +11,8 @@
 namespace tumble::diagnose {
 namespace {
 
-constexpr double kMost = 1.5;  // times full strength
+constexpr double kMost = 1.5;     // times full strength
+constexpr double kOneWorn = 0.5;  // full strength of a single lifter's wear, share of its height
 
 // Full strengths of artefacts: what happens to careful people.
 constexpr double kScale = 0.02, kRotationDeg = 2, kClock = 0.02, kFilling = 0.05, kSpeed = 0.03, kTorque = 0.036;
@@ -54,6 +55,17 @@ Suspect misjudged(const char* name, const char* unit, const std::string& key, do
   return s;
 }
 
+Suspect lost_lifter() {
+  Suspect s;
+  s.name = "missing_lifters";
+  s.variant = "one lifter";
+  s.low = s.high = 1;
+  s.parameter = "count";
+  s.fixed.push_back("effects.missing_lifters.lifters=[0]");
+  s.turns_with_drum = true;
+  return s;
+}
+
 }  // namespace
 
 std::vector<Suspect> suspects_of(const Config& mill) {
@@ -61,11 +73,22 @@ std::vector<Suspect> suspects_of(const Config& mill) {
   for (const Effect& effect : all_effects()) {
     if (has_effect(mill, effect.name)) continue;
     Suspect s = of_effect(effect);
-    if (s.sets.empty()) continue;  // lifters that are gone are looked for one by one, by what turns with the drum
+    if (s.sets.empty()) continue;
     if (s.name == "hertz_contact" && mill.contact.law == ContactLaw::kHertz) continue;
-    if (s.name == "lifter_wear" && mill.mill.lifters.profile == LifterProfile::kNone) continue;
+    const bool no_lifters = mill.mill.lifters.profile == LifterProfile::kNone;
+    if (s.name == "lifter_wear" && no_lifters) continue;
+    s.turns_with_drum = s.name == "speed_ripple";  // of one ripple in a revolution; others show in the mill's angle
+    list.push_back(s);
+    if (s.name != "lifter_wear") continue;
+    s.variant = "one lifter";
+    s.turns_with_drum = true;
+    s.fixed.push_back("effects.lifter_wear.lifters=[0]");
+    s.full = s.sets.front().full = kOneWorn;
     list.push_back(std::move(s));
   }
+  if (mill.mill.lifters.profile != LifterProfile::kNone && mill.mill.lifters.count > 1 &&
+      !has_effect(mill, "missing_lifters"))
+    list.push_back(lost_lifter());
   list.push_back(seen("camera_scale", "relative", "", kScale, {kScale, 0, 0}));
   list.push_back(seen("camera_rotation", "angle_deg", "deg", kRotationDeg, {0, kRotationDeg * kPi / 180, 0}));
   list.push_back(seen("frame_clock", "relative", "", kClock, {0, 0, kClock}));
@@ -89,7 +112,14 @@ std::vector<std::string> sets_at(const Suspect& suspect, double strength) {
     if (s.whole) value = std::round(value);
     sets.push_back(fmt::format("{}={}", s.key, value));
   }
+  if (strength != 0) sets.insert(sets.end(), suspect.fixed.begin(), suspect.fixed.end());
   return sets;
+}
+
+double strength_of_sets(const Suspect& suspect, double strength) {
+  for (const Suspect::Set& s : suspect.sets)
+    if (s.whole) return (std::round(s.none + strength * (s.full - s.none)) - s.none) / (s.full - s.none);
+  return strength;
 }
 
 }  // namespace tumble::diagnose

@@ -12,7 +12,8 @@ namespace tumble::diagnose {
 enum class SuspectKind { kPhysics, kArtefact };
 
 struct Suspect {
-  std::string name;  // "rolling_resistance", "camera_scale"
+  std::string name;     // "rolling_resistance", "camera_scale"
+  std::string variant;  // "one lifter", where a name has several ways to be guilty
   SuspectKind kind = SuspectKind::kPhysics;
   double low = 0, high = 1.5;  // strengths that are looked at
 
@@ -24,6 +25,9 @@ struct Suspect {
     bool whole = false;  // rounded to a whole number
   };
   std::vector<Set> sets;
+  std::vector<std::string> fixed;  // assignments that go with any strength
+  // It is somewhere on the drum, and looked for at every lifter: simulated at lifter 0.
+  bool turns_with_drum = false;
   // Or seen: how the observer errs at strength 1, or the torque's offset [share of the mean torque].
   Observer observer;
   double torque_offset = 0;
@@ -31,7 +35,7 @@ struct Suspect {
   std::string parameter, unit;
   double full = 1;
 
-  bool is_simulated() const { return !sets.empty(); }
+  bool is_simulated() const { return !sets.empty() || !fixed.empty(); }
 };
 
 // Those that this mill can have: effects that it has already are no suspects.
@@ -39,5 +43,7 @@ std::vector<Suspect> suspects_of(const Config& mill);
 
 // "effects.rolling_resistance.coefficient=0.01" for half its strength.
 std::vector<std::string> sets_at(const Suspect& suspect, double strength);
+// The strength that those come to, where a key takes whole numbers only.
+double strength_of_sets(const Suspect& suspect, double strength);
 
 }  // namespace tumble::diagnose

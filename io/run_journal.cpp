@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/error.h"
+#include "core/fingerprint.h"
 #include "core/version.h"
 #include "io/config_file.h"
 
@@ -19,12 +20,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// FNV-1a, 64 bits: among a million runs two alike are a matter of one in 40 million.
-std::uint64_t key_of(const Config& config) {
-  std::uint64_t hash = 0xcbf29ce484222325ull;
-  for (const char c : to_toml(config)) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3ull;
-  return hash;
-}
+std::uint64_t key_of(const Config& config) { return fingerprint(to_toml(config)); }
 
 Json header() { return {{"journal_of_runs", 1}, {"tumble", kVersion}}; }
 

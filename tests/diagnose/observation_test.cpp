@@ -69,6 +69,28 @@ TEST(Observation, CarriedBallsMoveAsTheDrumAndNotAgainstIt) {
   EXPECT_GT(filled, 2);
 }
 
+// Noise of tracking would add 2 (0.3 mm / 8 ms)^2 to the square of a velocity measured once.
+TEST(Observation, NoiseOfTrackingIsNoAgitation) {
+  const ObservationLayout layout(18);
+  Random random(8);
+  MapSums sums(layout, kRadius, kTip, kBall, {{0.004, {}}});
+  const double v = 0.2;
+  for (int frame = 0; frame < 4000; ++frame) {
+    const double time = frame / 250.0;
+    std::vector<Sighting> balls;
+    for (int i = 0; i < 20; ++i) {
+      const double a = v / 0.1 * time + i;
+      balls.push_back({i, 0.1 * std::cos(a) + 3e-4 * std::sqrt(12.0) * (random.uniform() - 0.5),
+                       0.1 * std::sin(a) + 3e-4 * std::sqrt(12.0) * (random.uniform() - 0.5), kBall, 0});
+    }
+    sums.add(time, 0, balls);
+  }
+  Observation seen;
+  sums.finish(0, seen);
+  const double area = sum_of(seen, layout, Observable::kOccupancy);
+  EXPECT_NEAR(sum_of(seen, layout, Observable::kAgitation) / area, v * v, 0.01 * v * v);
+}
+
 TEST(Observation, ObserversErrAsTheySay) {
   const ObservationLayout layout(18);
   const double quarter = kPi / 2;

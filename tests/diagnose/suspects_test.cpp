@@ -20,6 +20,7 @@ Config mill() {
   Config config;
   config.mill.speed = 0.7;
   config.mill.lifters.profile = LifterProfile::kRectangle;
+  config.mill.lifters.count = 18;
   config.charge.count = 112;
   return config;
 }
@@ -27,7 +28,7 @@ Config mill() {
 TEST(Suspects, AreAllEffectsThatHaveAStrengthAndAllErrorsOfMeasurement) {
   const std::set<std::string> names = names_of(suspects_of(mill()));
   for (const Effect& e : all_effects())
-    EXPECT_EQ(names.contains(e.name), std::string(e.name) != "missing_lifters") << e.name;
+    EXPECT_TRUE(names.contains(e.name)) << e.name;
   for (const char* artefact :
        {"camera_scale", "camera_rotation", "frame_clock", "filling_error", "speed_error", "torque_offset"})
     EXPECT_TRUE(names.contains(artefact)) << artefact;
@@ -49,7 +50,7 @@ TEST(Suspects, StrengthsBecomeKeysOfTheMill) {
     } else if (s.name == "filling_error") {
       EXPECT_EQ(sets_at(s, -1), std::vector<std::string>{"charge.count=106"});
     }
-    EXPECT_LE(s.low, 0);
+    EXPECT_TRUE(s.low <= 0 || s.low == s.high);
     EXPECT_GT(s.high, 0);
     EXPECT_NE(s.is_simulated(),
               s.torque_offset != 0 || s.observer.scale != 0 || s.observer.rotation != 0 || s.observer.clock != 0);
