@@ -19,9 +19,11 @@ struct Problem {
   std::vector<int> free;
   Eigen::VectorXd prior_sd, low, high;  // of the free ones
   Eigen::Index size = 0;                // of all places
+  std::vector<std::pair<int, double>> fixed;
 
   Eigen::VectorXd all(const Eigen::VectorXd& x) const {
     Eigen::VectorXd p = Eigen::VectorXd::Zero(size);
+    for (const auto& [place, value] : fixed) p[place] = value;
     for (std::size_t i = 0; i < free.size(); ++i) p[free[i]] = x[static_cast<Eigen::Index>(i)];
     return p;
   }
@@ -47,12 +49,15 @@ State look(const Problem& problem, const Eigen::VectorXd& x) {
     const Eigen::VectorXd rest = m.seen - expected.mean;
     Eigen::MatrixXd slope(rest.size(), n);
     for (Eigen::Index i = 0; i < n; ++i) slope.col(i) = expected.slope.col(problem.free[static_cast<std::size_t>(i)]);
-    const double chi2 = (rest.squaredNorm() + m.outside) / variance;
+    const double chi2 = rest.squaredNorm() / variance;
     s.chi2 += chi2;
     s.chi2_of.push_back(chi2);
-    s.misfit += chi2 + double(m.response->numbers()) * std::log(variance);
-    s.information += slope.transpose() * slope / variance;
-    s.gradient -= slope.transpose() * rest / variance;
+    // The scatter is known from so many runs only: Student's t, which for many becomes the normal distribution.
+    const double freedom = m.response->freedom(), numbers = double(m.response->numbers());
+    s.misfit += (freedom + 1) * std::log1p(chi2 / freedom) + numbers * std::log(variance);
+    const double weight = (freedom + 1) / (freedom + chi2) / variance;
+    s.information += weight * slope.transpose() * slope;
+    s.gradient -= weight * slope.transpose() * rest;
   }
   return s;
 }
@@ -92,7 +97,7 @@ double Explanation::se(int place) const {
 
 Explanation explain(std::span<const Measured> measured, std::span<const Suspect> suspects, std::vector<int> guilty) {
   const int keys = static_cast<int>(measured.front().response->uncertain());
-  Problem problem{measured, {}, {}, {}, {}, keys + static_cast<Eigen::Index>(suspects.size())};
+  Problem problem{measured, {}, {}, {}, {}, keys + static_cast<Eigen::Index>(suspects.size()), {}};
   std::vector<double> sd, low, high;
   const auto add = [&](int place, double prior, double least, double most) {
     problem.free.push_back(place);
@@ -105,8 +110,10 @@ Explanation explain(std::span<const Measured> measured, std::span<const Suspect>
   for (int s = 0; s < static_cast<int>(suspects.size()); ++s) {
     const bool is_guilty = std::find(guilty.begin(), guilty.end(), s) != guilty.end();
     const Suspect& suspect = suspects[static_cast<std::size_t>(s)];
-    if (is_guilty) accused.push_back(problem.free.size());
-    if (is_guilty)
+    if (is_guilty && suspect.low < suspect.high) accused.push_back(problem.free.size());
+    if (is_guilty && suspect.low == suspect.high)
+      problem.fixed.emplace_back(keys + s, suspect.low);
+    else if (is_guilty)
       add(keys + s, kUsualStrength, suspect.low, suspect.high);
     else if (!suspect.is_simulated())
       add(keys + s, kUsualError, -4 * kUsualError, 4 * kUsualError);

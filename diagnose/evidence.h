@@ -11,7 +11,6 @@ namespace tumble::diagnose {
 struct Measured {  // in one condition
   const Response* response = nullptr;
   Eigen::VectorXd seen;    // Response::whitened
-  double outside = 0;      // Response::outside
   double revolutions = 0;  // that were watched
 };
 

@@ -25,11 +25,12 @@ void FreeFlights::add(double time, std::span<const Sighting> balls) {
   std::vector<char> touched(by_x.size(), 0);
   for (std::size_t i = 0; i < by_x.size(); ++i) {
     const Sighting& a = *by_x[i];
-    if (std::hypot(a.x, a.y) + (1 + kClearance) * a.radius > tip_radius_) touched[i] = 1;
+    if (std::sqrt(a.x * a.x + a.y * a.y) + (1 + kClearance) * a.radius > tip_radius_) touched[i] = 1;
     for (std::size_t j = i + 1; j < by_x.size(); ++j) {
       const Sighting& b = *by_x[j];
       if (b.x - a.x > (1 + kClearance) * (a.radius + widest)) break;
-      if (std::hypot(b.x - a.x, b.y - a.y) < (1 + kClearance) * (a.radius + b.radius)) touched[i] = touched[j] = 1;
+      const double dx = b.x - a.x, dy = b.y - a.y, clear = (1 + kClearance) * (a.radius + b.radius);
+      if (dx * dx + dy * dy < clear * clear) touched[i] = touched[j] = 1;
     }
   }
   std::map<int, Window> going_on;

@@ -21,22 +21,24 @@ namespace {
 
 constexpr double kWidest = 2.3;     // standard deviations of what is uncertain, both ways
 constexpr double kRate = 250;       // frames per second of the simulations: the shortest span is one frame
+constexpr std::size_t kStride = 2;  // one frame after another shows little that is new, at twice the cost
 constexpr double kRevolutions = 8;  // of a run that are looked at
-constexpr std::size_t kPlain = 12, kOfSuspect = 5;  // runs of a block
+constexpr std::size_t kPlain = 12, kOfSuspect = 5, kOfContact = 10;  // runs of a block
 
 // All that is summed up of a run.
 class Watcher {
  public:
-  explicit Watcher(const RunSetup& setup)
+  Watcher(const RunSetup& setup, Watched watched)
       : setup_(setup), shape_(make_mill_shape(setup.config)), layout_(shape_.lifter_count), measurer_(setup) {
     double mean = 0;
     for (const double r : setup.balls.radius) mean += r / double(setup.balls.size());
     all_.push_back({});
-    for (const Observer& o : observers()) all_.push_back(o);
+    if (watched == Watched::kAll)
+      for (const Observer& o : observers()) all_.push_back(o);
     std::vector<View> views;
     for (const Observer& o : all_)
       for (const double span : kSpans) views.push_back({span, o});
-    maps_.emplace(layout_, shape_.radius, shape_.tip_radius, mean, views);
+    maps_.emplace(layout_, shape_.radius, shape_.tip_radius, mean, views, kStride);
     flights_.emplace(shape_.tip_radius);
   }
 
@@ -101,21 +103,21 @@ class Watcher {
 std::array<Observer, kObservers> observers() {
   std::array<Observer, kObservers> list;
   std::size_t at = 0;
-  for (const Suspect& s : suspects_of({})) {
-    const Observer& o = s.observer;
+  for (const Suspect& suspect : suspects_of({})) {
+    const Observer& o = suspect.observer;
     if (o.scale == 0 && o.rotation == 0 && o.clock == 0) continue;
-    for (const double half : {-0.5, 0.5}) list[at++] = {half * o.scale, half * o.rotation, half * o.clock};
+    for (const double s : {-kObserved, kObserved}) list[at++] = {s * o.scale, s * o.rotation, s * o.clock};
   }
   return list;
 }
 
-SignatureRun run_signature(const Config& wanted, const Progress& progress) {
+SignatureRun run_signature(const Config& wanted, const Progress& progress, Watched watched) {
   SignatureRun run;
   Config config = bare(wanted);
   config.run.seed = wanted.run.seed;
   std::unique_ptr<Watcher> watcher;
   sim::RunSink sink;
-  sink.setup = [&](const RunSetup& setup) { watcher = std::make_unique<Watcher>(setup); };
+  sink.setup = [&](const RunSetup& setup) { watcher = std::make_unique<Watcher>(setup, watched); };
   sink.frame = [&](const Frame& frame) { watcher->add(frame); };
   sink.progress = progress;
   try {
@@ -143,9 +145,15 @@ std::vector<SignatureAsked> plan_block(std::size_t block, std::size_t uncertain,
   for (std::size_t s = 0; s < suspects.size(); ++s) {
     const Suspect& suspect = suspects[s];
     if (!suspect.is_simulated()) continue;
-    for (std::size_t k = 0; k < kOfSuspect; ++k) {  // strengths spread evenly over all blocks
-      const double share = double(block * kOfSuspect + k) * 0.6180339887498949;
-      const double strength = suspect.low + (suspect.high - suspect.low) * (share - std::floor(share));
+    const std::size_t runs = suspect.acts_in_contacts ? kOfContact : kOfSuspect;
+    for (std::size_t k = 0; k < runs; ++k) {  // strengths over all blocks, the strong ones more often: they tell more
+      const double share = double(block * runs + k) * 0.6180339887498949;
+      const double along = 2 * (share - std::floor(share)) - 1;  // [-1, 1)
+      const bool both_ways = suspect.low < 0;
+      const double far = std::sqrt(both_ways ? std::abs(along) : (along + 1) / 2);
+      const double strength = suspect.low == suspect.high ? suspect.high
+                              : both_ways                 ? far * (along < 0 ? suspect.low : suspect.high)
+                                                          : suspect.low + far * (suspect.high - suspect.low);
       asked.push_back({{}, static_cast<int>(s), strength, 0});
     }
   }

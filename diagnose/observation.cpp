@@ -15,6 +15,8 @@ constexpr int kUsualPockets = 18;
 constexpr std::size_t kAngleCount = 6, kFlightCount = 4;
 constexpr double kReach = 1.04;  // [R]: cells up to here may hold a ball's share
 
+constexpr double kOnFrame = 1e-6;  // [frames]: nearer than that, a moment is the frame's own
+
 // Finds balls by number in a list that is sorted by it, asked for in that order.
 template <class Place>
 class Follower {
@@ -129,9 +131,17 @@ std::string ObservationLayout::region(std::size_t i) const {
   }
 }
 
+std::vector<double> turned_on(const ObservationLayout& layout, std::vector<double> numbers, int lifters) {
+  const auto first = numbers.begin() + static_cast<std::ptrdiff_t>(layout.first(Observable::kPockets));
+  for (const int half : {0, 1})
+    std::rotate(first + half * layout.pockets, first + half * layout.pockets + lifters,
+                first + (half + 1) * layout.pockets);
+  return numbers;
+}
+
 MapSums::MapSums(const ObservationLayout& layout, double mill_radius, double tip_radius, double mean_radius,
-                 std::vector<View> views)
-    : layout_(&layout), radius_(mill_radius), ring_(tip_radius - mean_radius) {
+                 std::vector<View> views, std::size_t stride)
+    : layout_(&layout), radius_(mill_radius), ring_(tip_radius - mean_radius), stride_(stride) {
   for (const View& v : views) {
     const double longer = 1 + v.observer.scale, reach = v.span / (1 + v.observer.clock);
     views_.push_back({v, std::cos(v.observer.rotation) * longer, std::sin(v.observer.rotation) * longer, reach,
@@ -147,34 +157,44 @@ void MapSums::add(double time, double mill_angle, std::vector<Sighting> balls) {
     std::size_t middle = 1;
     while (window_[middle].time + tiny < window_.front().time + longest_) ++middle;
     if (window_[middle].time + longest_ > window_.back().time + tiny) break;
-    for (Sums& sums : views_) deposit(sums, window_[middle]);
+    if (frames_++ % stride_ == 0) {
+      moments_.clear();
+      for (Sums& sums : views_) deposit(sums, window_[middle]);
+    }
     window_.pop_front();
   }
 }
 
-// Straight between two frames; only balls that both show.
-double MapSums::places_at(double time, std::vector<Place>& places) const {
+// Straight between two frames; only balls that both show. Views share the moments that they look at.
+const MapSums::Moment& MapSums::moment_at(double time) {
+  for (const Moment& m : moments_)
+    if (std::abs(m.time - time) < 1e-9) return m;
+  Moment moment{time, 0, {}};
+  auto& places = moment.places;
   std::size_t next = 1;
   while (next + 1 < window_.size() && window_[next].time < time) ++next;
   const Seen &a = window_[next - 1], &b = window_[next];
   const double share = std::clamp((time - a.time) / (b.time - a.time), 0.0, 1.0);
-  places.clear();
-  for (std::size_t i = 0, j = 0; i < a.balls.size() && j < b.balls.size();) {
-    const Sighting &p = a.balls[i], &q = b.balls[j];
-    if (p.ball == q.ball) places.push_back({p.ball, p.x + share * (q.x - p.x), p.y + share * (q.y - p.y)});
-    i += p.ball <= q.ball;
-    j += q.ball <= p.ball;
+  places.reserve(a.balls.size());
+  if (share < kOnFrame || share > 1 - kOnFrame) {
+    for (const Sighting& s : (share < 0.5 ? a : b).balls) places.push_back({s.ball, s.x, s.y});
+  } else {
+    for (std::size_t i = 0, j = 0; i < a.balls.size() && j < b.balls.size();) {
+      const Sighting &p = a.balls[i], &q = b.balls[j];
+      if (p.ball == q.ball) places.push_back({p.ball, p.x + share * (q.x - p.x), p.y + share * (q.y - p.y)});
+      i += p.ball <= q.ball;
+      j += q.ball <= p.ball;
+    }
   }
-  return a.mill_angle + share * (b.mill_angle - a.mill_angle);
+  moment.mill_angle = a.mill_angle + share * (b.mill_angle - a.mill_angle);
+  return moments_.emplace_back(std::move(moment));
 }
 
 void MapSums::deposit(Sums& sums, const Seen& at) {
   const double twice = 2 * sums.view.span;
-  const double turned_from = places_at(at.time - sums.reach, before_),
-               turned_to = places_at(at.time + sums.reach, after_);
-  places_at(at.time - 2 * sums.reach, long_before_);
-  places_at(at.time + 2 * sums.reach, long_after_);
-  const double mill_speed = (turned_to - turned_from) / twice;
+  const Moment &start = moment_at(at.time - sums.reach), &end = moment_at(at.time + sums.reach),
+               &long_before = moment_at(at.time - 2 * sums.reach), &long_after = moment_at(at.time + 2 * sums.reach);
+  const double mill_speed = (end.mill_angle - start.mill_angle) / twice;
   ++sums.frames;
   const std::size_t cells = layout_->cells.size(), pocket_count = static_cast<std::size_t>(layout_->pockets);
   double* const occupancy = sums.values.data() + layout_->first(Observable::kOccupancy);
@@ -184,10 +204,11 @@ void MapSums::deposit(Sums& sums, const Seen& at) {
   double* const pockets = sums.values.data() + layout_->first(Observable::kPockets);
   const double cell = 2 * radius_ / kCells, per_cell = 1 / (cell * cell);
   const double c = sums.cosine, sn = sums.sine, stretch = (c * c + sn * sn) / (twice * twice);
-  Follower before(before_), after(after_), long_before(long_before_), long_after(long_after_);
+  Follower before(start.places), after(end.places), farther_before(long_before.places),
+      farther_after(long_after.places);
   for (const Sighting& s : at.balls) {
     const Place *from = before.find(s.ball), *to = after.find(s.ball);
-    const Place *farther_from = long_before.find(s.ball), *farther_to = long_after.find(s.ball);
+    const Place *farther_from = farther_before.find(s.ball), *farther_to = farther_after.find(s.ball);
     if (from == nullptr || to == nullptr) continue;
     const double dx = (to->x - from->x) / twice, dy = (to->y - from->y) / twice;
     const double x = c * s.x - sn * s.y, y = sn * s.x + c * s.y, vx = c * dx - sn * dy, vy = sn * dx + c * dy;
@@ -225,7 +246,7 @@ void MapSums::deposit(Sums& sums, const Seen& at) {
       agitation[near[n]] += share * square;
       if (is_told) spin[near[n]] += share * turns;
     }
-    const double r = std::hypot(x, y);
+    const double r = std::sqrt(x * x + y * y);
     if (r < ring_) continue;
     const double turn = (std::atan2(y, x) - at.mill_angle) / (2 * kPi) * double(pocket_count);
     const double rounds = std::floor(std::floor(turn) / double(pocket_count));

@@ -39,6 +39,9 @@ struct ObservationLayout {
   Observable observable_of(std::size_t i) const;
 };
 
+// The same numbers, had the drum been turned on by so many lifters before.
+std::vector<double> turned_on(const ObservationLayout& layout, std::vector<double> numbers, int lifters);
+
 // Torque [N m of one slice]; torque less M g x_com [N m]; the six toes and shoulders [deg]; area of balls per cell
 // [cell areas]; the same times velocity x, then y [m/s], times the velocity's square [m2/s2], and times spin [rad/s];
 // area of balls in each drum-fixed
@@ -71,11 +74,11 @@ struct View {
   Observer observer;
 };
 
-// Adds up frames for several views at once.
+// Adds up frames for several views at once: every frame, or every so manieth (`stride`).
 class MapSums {
  public:
   MapSums(const ObservationLayout& layout, double mill_radius, double tip_radius, double mean_radius,
-          std::vector<View> views);
+          std::vector<View> views, std::size_t stride = 1);
 
   void add(double time, double mill_angle, std::vector<Sighting> balls);  // times grow; balls by number
   // Fills occupancy, momentum, spin and pockets.
@@ -90,20 +93,25 @@ class MapSums {
     int ball;
     double x, y;
   };
+  struct Moment {
+    double time, mill_angle;
+    std::vector<Place> places;
+  };
   struct Sums {
     View view;
     double cosine, sine, reach;  // reach: the span in true time [s]
     std::vector<double> values;
     std::size_t frames = 0, spins = 0, squares = 0, balls = 0;
   };
-  double places_at(double time, std::vector<Place>& places) const;  // returns the mill's angle
+  const Moment& moment_at(double time);
   void deposit(Sums& sums, const Seen& at);
 
   const ObservationLayout* layout_;
   double radius_, ring_, longest_ = 0;
   std::vector<Sums> views_;
   std::deque<Seen> window_;
-  std::vector<Place> before_, after_, long_before_, long_after_;
+  std::deque<Moment> moments_;  // of the frame that is looked at
+  std::size_t stride_ = 1, frames_ = 0;
 };
 
 }  // namespace tumble::diagnose

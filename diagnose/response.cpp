@@ -1,65 +1,47 @@
 #include "diagnose/response.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Cholesky>
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace tumble::diagnose {
 namespace {
 
-// How far the terms of the polynomial may move a number, before any run speaks [standard deviations of one run]: what
-// is linear almost freely, curvature by less.
-constexpr double kLinear = 30, kCurved = 3;
-constexpr double kHalf = 0.5;  // strength of the library's observers
-constexpr int kFolds = 4;
+// How far a linear term may move a number, before any run speaks [standard deviations of one run].
+constexpr double kLinear = 100;
+constexpr std::array kBends{0.01, 0.03, 0.1, 0.3, 1.0};  // curvature, as a share of what is linear
+constexpr double kLeastSize = 0.2;
 constexpr double kMostOwnShare = 0.95;
 
-// Of a chance covariance from few runs: so much of the correlation is dropped.
-constexpr std::array kShrinkage{0.02, 0.05, 0.1, 0.2, 0.35, 0.5, 0.7};
+struct Fit {
+  Eigen::MatrixXd coefficients, information;
+  Eigen::VectorXd left_out;  // mean square of each number in runs that had no part in the fit
+  Eigen::VectorXd sd;        // of each number about the fit
+  double used = 0;           // degrees of freedom
+};
 
-Eigen::MatrixXd shrunk(const Eigen::MatrixXd& correlation, double share) {
-  Eigen::MatrixXd c = (1 - share) * correlation;
-  c.diagonal().setOnes();
-  return c;
-}
-
-// That with which residuals left out are likeliest.
-double best_shrinkage(const Eigen::MatrixXd& residuals) {
-  double best = kShrinkage.back(), most = -INFINITY;
-  const auto n = residuals.rows();
-  for (const double share : kShrinkage) {
-    double sum = 0;
-    for (int fold = 0; fold < kFolds; ++fold) {
-      std::vector<Eigen::Index> in, out;
-      for (Eigen::Index i = 0; i < n; ++i) (i % kFolds == fold ? out : in).push_back(i);
-      const Eigen::MatrixXd a = residuals(in, Eigen::all), b = residuals(out, Eigen::all);
-      const Eigen::LLT<Eigen::MatrixXd> factor(shrunk(a.transpose() * a / double(in.size()), share));
-      if (factor.info() != Eigen::Success) {
-        sum = -INFINITY;
-        break;
-      }
-      sum -= factor.matrixL().solve(b.transpose()).squaredNorm() / 2 +
-             double(out.size()) * factor.matrixLLT().diagonal().array().log().sum();
-    }
-    if (sum > most) most = sum, best = share;
-  }
-  return best;
+Fit fit_ridge(const Eigen::MatrixXd& design, const Eigen::MatrixXd& seen, const Eigen::VectorXd& precision) {
+  const auto n = double(design.rows());
+  Fit fit;
+  Eigen::MatrixXd system = design.transpose() * design;
+  system.diagonal() += precision;
+  fit.information = system.ldlt().solve(Eigen::MatrixXd::Identity(system.rows(), system.cols()));
+  fit.coefficients = fit.information * (design.transpose() * seen);
+  const Eigen::VectorXd own = (design * fit.information).cwiseProduct(design).rowwise().sum();
+  const Eigen::MatrixXd rest = seen - design * fit.coefficients;
+  const Eigen::VectorXd weight = (1 - own.array().min(kMostOwnShare)).inverse();
+  fit.left_out = (weight.asDiagonal() * rest).colwise().squaredNorm() / n;
+  fit.used = own.sum();
+  fit.sd = (rest.colwise().squaredNorm() / std::max(1.0, n - fit.used)).cwiseSqrt();
+  return fit;
 }
 
 }  // namespace
 
-std::vector<double> observed_at(const Sight& sight, double span) {
-  std::size_t next = 1;
-  while (next + 1 < kSpans.size() && kSpans[next] < span) ++next;
-  const double share = std::clamp((span - kSpans[next - 1]) / (kSpans[next] - kSpans[next - 1]), 0.0, 1.0);
-  std::vector<double> seen = sight.by_span[next - 1].value;
-  for (std::size_t i = 0; i < seen.size(); ++i) seen[i] += share * (sight.by_span[next].value[i] - seen[i]);
-  return seen;
-}
-
 Response::Response(const std::vector<const SignatureRun*>& runs, const std::vector<Suspect>& suspects,
-                   std::vector<std::size_t> chosen, const std::vector<double>& noise, double span)
-    : chosen_(std::move(chosen)), uncertain_(runs.front()->uncertain.size()) {
+                   const std::vector<std::size_t>& chosen, const std::vector<double>& noise, double span)
+    : features_(runs, suspects, chosen, noise, span), uncertain_(runs.front()->uncertain.size()) {
   const std::size_t d = uncertain_;
   simulated_terms_ = 1 + d + d * (d + 1) / 2;
   terms_of_.resize(suspects.size());
@@ -69,11 +51,9 @@ Response::Response(const std::vector<const SignatureRun*>& runs, const std::vect
   for (std::size_t s = 0; s < suspects.size(); ++s)
     if (!suspects[s].is_simulated()) terms_of_[s] = terms_, terms_ += 2 + d;
 
-  Eigen::MatrixXd seen(static_cast<Eigen::Index>(runs.size()), static_cast<Eigen::Index>(chosen_.size()));
+  Eigen::MatrixXd seen(static_cast<Eigen::Index>(runs.size()), features_.count());
   for (std::size_t r = 0; r < runs.size(); ++r) {
-    const std::vector<double> all = observed_at(runs[r]->seen, span);
-    for (std::size_t i = 0; i < chosen_.size(); ++i)
-      seen(static_cast<Eigen::Index>(r), static_cast<Eigen::Index>(i)) = all[chosen_[i]];
+    seen.row(static_cast<Eigen::Index>(r)) = features_.of_run(r, observed_at(runs[r]->seen, span));
     revolutions_ += runs[r]->revolutions / double(runs.size());
   }
   coefficients_ = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(terms_), seen.cols());
@@ -89,7 +69,7 @@ Response::Response(const std::vector<const SignatureRun*>& runs, const std::vect
     rest.row(static_cast<Eigen::Index>(r)) -= (b.transpose() * coefficients_).eval();
     rest.row(static_cast<Eigen::Index>(r)) /= std::sqrt(1 - own_share);
   }
-  whiten(rest, noise);
+  whiten(rest);
 }
 
 Eigen::VectorXd Response::places_of(const SignatureRun& run) const {
@@ -143,22 +123,55 @@ Eigen::MatrixXd Response::basis_slope(const Eigen::VectorXd& p) const {
   return slope;
 }
 
+// Curvature is believed in proportion to what is linear in the same places: what hardly moves a number hardly bends it.
+// By how much, the runs themselves say, left out one by one.
 void Response::fit(const std::vector<const SignatureRun*>& runs, const Eigen::MatrixXd& seen) {
   const auto n = static_cast<Eigen::Index>(runs.size()), t = static_cast<Eigen::Index>(simulated_terms_),
              d = static_cast<Eigen::Index>(uncertain_);
   Eigen::MatrixXd design(n, t);
-  for (Eigen::Index r = 0; r < n; ++r) {
-    design.row(r) = basis(places_of(*runs[static_cast<std::size_t>(r)])).head(t);
+  for (Eigen::Index r = 0; r < n; ++r) design.row(r) = basis(places_of(*runs[static_cast<std::size_t>(r)])).head(t);
+
+  const std::vector<Eigen::Index> linear = linear_terms();
+  Eigen::MatrixXd straight(n, static_cast<Eigen::Index>(linear.size()));
+  for (std::size_t i = 0; i < linear.size(); ++i) straight.col(static_cast<Eigen::Index>(i)) = design.col(linear[i]);
+  const Eigen::VectorXd loose = Eigen::VectorXd::Constant(straight.cols(), 1 / (kLinear * kLinear));
+  const Fit first = fit_ridge(straight, seen, loose);
+  const Eigen::MatrixXd moved = first.coefficients * first.sd.cwiseInverse().asDiagonal();
+  Eigen::VectorXd size = Eigen::VectorXd::Zero(t);  // of each term, by the linear ones that it is made of
+  for (std::size_t i = 0; i < linear.size(); ++i)
+    size[linear[i]] =
+        std::max(kLeastSize, moved.row(static_cast<Eigen::Index>(i)).norm() / std::sqrt(double(seen.cols())));
+  Eigen::Index at = 1 + d;
+  for (Eigen::Index k = 0; k < d; ++k)
+    for (Eigen::Index l = 0; l <= k; ++l) size[at++] = std::sqrt(size[1 + k] * size[1 + l]);
+  for (const std::size_t term : terms_of_) {
+    if (term >= simulated_terms_) continue;
+    const auto of = static_cast<Eigen::Index>(term);
+    size[of + 1] = size[of];
+    for (Eigen::Index k = 0; k < d; ++k) size[of + 2 + k] = std::sqrt(size[of] * size[1 + k]);
   }
-  Eigen::VectorXd precision = Eigen::VectorXd::Constant(t, 1 / (kCurved * kCurved));
-  precision[0] = 0;
-  precision.segment(1, d).setConstant(1 / (kLinear * kLinear));
-  for (std::size_t s = 0; s < terms_of_.size(); ++s)
-    if (terms_of_[s] < simulated_terms_) precision[static_cast<Eigen::Index>(terms_of_[s])] = 1 / (kLinear * kLinear);
-  Eigen::MatrixXd information = design.transpose() * design;
-  information.diagonal() += precision;
-  information_ = information.ldlt().solve(Eigen::MatrixXd::Identity(t, t));
-  coefficients_.topRows(t) = information_ * (design.transpose() * seen);
+
+  double least = INFINITY;
+  for (const double bend : kBends) {
+    Eigen::VectorXd precision = (bend * size).cwiseAbs2().cwiseInverse();
+    for (const Eigen::Index term : linear) precision[term] = 1 / (kLinear * kLinear);
+    precision[0] = 0;
+    const Fit fit = fit_ridge(design, seen, precision);
+    const double misfit = fit.left_out.array().log().sum();
+    if (!(misfit < least)) continue;
+    least = misfit;
+    information_ = fit.information;
+    coefficients_.topRows(t) = fit.coefficients;
+    freedom_ = double(n) - fit.used;
+  }
+}
+
+std::vector<Eigen::Index> Response::linear_terms() const {
+  std::vector<Eigen::Index> linear;
+  for (std::size_t k = 0; k <= uncertain_; ++k) linear.push_back(static_cast<Eigen::Index>(k));
+  for (const std::size_t term : terms_of_)
+    if (term < simulated_terms_) linear.push_back(static_cast<Eigen::Index>(term));
+  return linear;
 }
 
 // Each run is its own twin: chance has no part in what an observer's error changes.
@@ -177,77 +190,60 @@ void Response::fit_observers(const std::vector<const SignatureRun*>& runs, const
     const Suspect& suspect = suspects[s];
     if (suspect.is_simulated()) continue;
     const auto first = static_cast<Eigen::Index>(terms_of_[s]);
-    if (suspect.torque_offset != 0) {
-      const double torque = coefficients_(0, 0);  // at MILL.toml's values
-      for (std::size_t i = 0; i < chosen_.size(); ++i)
-        if (chosen_[i] < 2) coefficients_(first, static_cast<Eigen::Index>(i)) = suspect.torque_offset * torque;
-      continue;
-    }
     Eigen::MatrixXd slope(seen.rows(), seen.cols()), curve(seen.rows(), seen.cols());
     for (Eigen::Index r = 0; r < n; ++r) {
-      const SignatureRun& run = *runs[static_cast<std::size_t>(r)];
-      const std::vector<double> less = observed_at(run.misseen[2 * observer], span),
-                                more = observed_at(run.misseen[2 * observer + 1], span);
-      for (std::size_t i = 0; i < chosen_.size(); ++i) {
-        const auto c = static_cast<Eigen::Index>(i);
-        const double up = more[chosen_[i]] - seen(r, c), down = less[chosen_[i]] - seen(r, c);
-        slope(r, c) = (up - down) / (2 * kHalf);
-        curve(r, c) = (up + down) / (2 * kHalf * kHalf);
+      const auto run = static_cast<std::size_t>(r);
+      Eigen::VectorXd less, more;
+      if (suspect.torque_offset != 0) {
+        std::vector<double> shifted = observed_at(runs[run]->seen, span);
+        const double offset = kObserved * suspect.torque_offset * shifted[0];
+        shifted[0] += offset;
+        shifted[1] += offset;
+        more = features_.of_run(run, shifted);
+        less = 2 * seen.row(r).transpose() - more;
+      } else {
+        less = features_.of_run(run, observed_at(runs[run]->misseen[2 * observer], span));
+        more = features_.of_run(run, observed_at(runs[run]->misseen[2 * observer + 1], span));
       }
+      const Eigen::VectorXd right = seen.row(r).transpose();
+      slope.row(r) = (more - less).transpose() / (2 * kObserved);
+      curve.row(r) = (more + less - 2 * right).transpose() / (2 * kObserved * kObserved);
     }
     const Eigen::MatrixXd fitted = normal.solve(design.transpose() * slope);
     coefficients_.row(first) = fitted.row(0);
     coefficients_.row(first + 1) = curve.colwise().mean();
     coefficients_.middleRows(first + 2, d) = fitted.bottomRows(d);
-    ++observer;
+    if (suspect.torque_offset == 0) ++observer;
   }
 }
 
-void Response::whiten(const Eigen::MatrixXd& residuals, const std::vector<double>& noise) {
-  const auto freedom = double(residuals.rows());
-  Eigen::VectorXd sd = (residuals.colwise().squaredNorm() / freedom).cwiseSqrt();
-  for (Eigen::Index i = 0; i < sd.size(); ++i) sd[i] = std::max(sd[i], 1e-12);
-  const Eigen::MatrixXd scaled = residuals * sd.cwiseInverse().asDiagonal();
-  const double share = best_shrinkage(scaled);
-  Eigen::MatrixXd covariance = sd.asDiagonal() * shrunk(scaled.transpose() * scaled / freedom, share) * sd.asDiagonal();
-  for (Eigen::Index i = 0; i < sd.size(); ++i)
-    covariance(i, i) += std::pow(noise[static_cast<std::size_t>(i)], 2) + 1e-6 * sd[i] * sd[i];
-  lower_ = covariance.llt().matrixL();
-  const Eigen::MatrixXd white = lower_.triangularView<Eigen::Lower>().solve(coefficients_.transpose());
-  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(white);
-  const auto rank = std::min(white.rows(), white.cols());
-  span_ = qr.householderQ() * Eigen::MatrixXd::Identity(white.rows(), rank);
-  within_ = span_.transpose() * white;
+void Response::whiten(const Eigen::MatrixXd& residuals) {
+  Eigen::MatrixXd covariance = residuals.transpose() * residuals / double(residuals.rows());
+  covariance.diagonal() *= 1 + 1e-6;
+  lower_ = (covariance + features_.noise()).llt().matrixL();
+  const Eigen::MatrixXd z = lower_.triangularView<Eigen::Lower>().solve(residuals.transpose());
+  double sum = 0, square = 0;
+  for (Eigen::Index r = 0; r < z.cols(); ++r) {
+    const double log_chi2 = std::log(z.col(r).squaredNorm() / double(z.rows()));
+    sum += log_chi2;
+    square += log_chi2 * log_chi2;
+  }
+  const double n = double(z.cols());
+  log_misfit_ = {sum / n, std::sqrt(std::max(square / n - sum * sum / (n * n), 1e-6))};
+  white_ = lower_.triangularView<Eigen::Lower>().solve(coefficients_.transpose());
 }
 
 Response::Expected Response::at(const Eigen::VectorXd& places) const {
   const Eigen::VectorXd b = basis(places), simulated = b.head(static_cast<Eigen::Index>(simulated_terms_));
-  return {within_ * b, within_ * basis_slope(places), simulated.dot(information_ * simulated)};
-}
-
-Eigen::VectorXd Response::white(const std::vector<double>& observation) const {
-  Eigen::VectorXd y(static_cast<Eigen::Index>(chosen_.size()));
-  for (std::size_t i = 0; i < chosen_.size(); ++i) y[static_cast<Eigen::Index>(i)] = observation[chosen_[i]];
-  return lower_.triangularView<Eigen::Lower>().solve(y);
+  return {white_ * b, white_ * basis_slope(places), simulated.dot(information_ * simulated)};
 }
 
 Eigen::VectorXd Response::whitened(const std::vector<double>& observation) const {
-  return span_.transpose() * white(observation);
+  return lower_.triangularView<Eigen::Lower>().solve(features_.of(observation));
 }
 
-double Response::outside(const std::vector<double>& observation) const {
-  const Eigen::VectorXd all = white(observation);
-  return std::max(0.0, all.squaredNorm() - (span_.transpose() * all).squaredNorm());
-}
-
-std::vector<double> Response::mean_observation(const Eigen::VectorXd& places) const {
-  const Eigen::VectorXd mean = coefficients_.transpose() * basis(places);
-  return {mean.data(), mean.data() + mean.size()};
-}
-
-std::vector<double> Response::scatter() const {
-  const Eigen::VectorXd sd = lower_.rowwise().norm();
-  return {sd.data(), sd.data() + sd.size()};
+Eigen::VectorXd Response::whitened_run(std::size_t run, const std::vector<double>& observation) const {
+  return lower_.triangularView<Eigen::Lower>().solve(features_.of_run(run, observation));
 }
 
 }  // namespace tumble::diagnose

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
 
 #include "core/effects.h"
 #include "core/units.h"
@@ -20,6 +21,7 @@ constexpr double kScale = 0.02, kRotationDeg = 2, kClock = 0.02, kFilling = 0.05
 Suspect of_effect(const Effect& effect) {
   Suspect s;
   s.name = effect.name;
+  s.acts_in_contacts = std::string_view(effect.acts_on) == "contact";
   for (const EffectParameter& p : effect.parameters) {
     // The first strength is what is asked for; another that has a typical value goes with it.
     if (!p.strength || p.list || std::isnan(p.typical) || !(p.typical != 0)) continue;

@@ -28,6 +28,7 @@ struct Suspect {
   std::vector<std::string> fixed;  // assignments that go with any strength
   // It is somewhere on the drum, and looked for at every lifter: simulated at lifter 0.
   bool turns_with_drum = false;
+  bool acts_in_contacts = false;
   // Or seen: how the observer errs at strength 1, or the torque's offset [share of the mean torque].
   Observer observer;
   double torque_offset = 0;

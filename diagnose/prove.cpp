@@ -1,0 +1,135 @@
+#include "diagnose/prove.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/error.h"
+#include "core/units.h"
+#include "diagnose/in_turns.h"
+#include "diagnose/observe.h"
+
+namespace tumble::diagnose {
+namespace {
+
+constexpr double kMostlyThere = 0.8;        // of the runs must show a number
+constexpr std::uint64_t kSeeds = 1u << 20;  // far from those of the library
+
+double strength_at(const Scene& scene, const Model& model, std::size_t suspect) {
+  return model.places[static_cast<Eigen::Index>(scene.middle.size() + suspect)];
+}
+
+// The error of measurement that the model knows of, all artefacts taken together.
+Observer observer_of(const Scene& scene, const Model& model) {
+  Observer sum;
+  for (std::size_t s = 0; s < scene.suspects.size(); ++s) {
+    const Observer& o = scene.suspects[s].observer;
+    const double strength = strength_at(scene, model, s);
+    sum.scale += strength * o.scale;
+    sum.rotation += strength * o.rotation;
+    sum.clock += strength * o.clock;
+  }
+  return sum;
+}
+
+Observer opposite(const Observer& o) { return {1 / (1 + o.scale) - 1, -o.rotation, 1 / (1 + o.clock) - 1}; }
+
+}  // namespace
+
+std::vector<std::string> sets_of(const Scene& scene, const std::vector<UncertainKey>& uncertain, const Model& model) {
+  std::vector<std::string> sets;
+  for (std::size_t k = 0; k < uncertain.size(); ++k)
+    sets.push_back(fmt::format("{}={}", uncertain[k].key,
+                               scene.middle[k] + model.places[static_cast<Eigen::Index>(k)] * uncertain[k].sd));
+  for (std::size_t s = 0; s < scene.suspects.size(); ++s) {
+    const double strength = strength_at(scene, model, s);
+    if (strength == 0 || !scene.suspects[s].is_simulated()) continue;
+    for (std::string& set : sets_at(scene.suspects[s], strength)) sets.push_back(std::move(set));
+  }
+  return sets;
+}
+
+std::vector<double> corrected(const Scene& scene, const Model& model, std::vector<double>& noise) {
+  const ObservationLayout layout(scene.measurement->config.mill.lifters.count);
+  double offset = 0;
+  for (std::size_t s = 0; s < scene.suspects.size(); ++s)
+    offset += strength_at(scene, model, s) * scene.suspects[s].torque_offset;
+  const double torque = slice_torque(*scene.measurement).value;
+  Observation seen = observe(*scene.measurement, layout, scene.span, opposite(observer_of(scene, model)),
+                             std::isnan(torque) ? 0 : torque * (1 - 1 / (1 + offset)));
+  noise = std::move(seen.noise);
+  return turned_on(layout, seen.value, model.lifter);
+}
+
+std::vector<std::vector<SignatureRun>> resimulate(const std::vector<Scene>& scenes,
+                                                  const std::vector<UncertainKey>& uncertain, const Model& model,
+                                                  std::size_t seeds, const MillWith& mill_with,
+                                                  const Progress& progress) {
+  std::vector<SignatureRun> all(scenes.size() * seeds);
+  in_turns(all.size(), progress, [&](std::size_t i, const Progress& own) {
+    const Scene& scene = scenes[i / seeds];
+    Config config = mill_with(scene.measurement->config, sets_of(scene, uncertain, model));
+    config.run.seed = kSeeds + i;
+    all[i] = run_signature(config, own, Watched::kRight);
+  });
+  std::vector<std::vector<SignatureRun>> by_scene(scenes.size());
+  for (std::size_t i = 0; i < all.size(); ++i)
+    if (all[i].error.empty()) by_scene[i / seeds].push_back(std::move(all[i]));
+  return by_scene;
+}
+
+std::vector<double> scatter_of(const std::vector<const std::vector<SignatureRun>*>& sets, double span) {
+  std::vector<double> sum;
+  double freedom = 0;
+  for (const auto* runs : sets) {
+    if (runs->size() < 2) continue;
+    std::vector<std::vector<double>> seen;
+    for (const SignatureRun& run : *runs) seen.push_back(observed_at(run.seen, span));
+    sum.resize(seen.front().size(), 0);
+    for (std::size_t i = 0; i < sum.size(); ++i) {
+      double mean = 0;
+      for (const auto& s : seen) mean += s[i] / double(seen.size());
+      for (const auto& s : seen) sum[i] += (s[i] - mean) * (s[i] - mean);
+    }
+    freedom += double(runs->size()) - 1;
+  }
+  for (double& s : sum) s = std::sqrt(s / freedom);
+  return sum;
+}
+
+Contrast contrast(const Scene& scene, const Model& model, const std::vector<SignatureRun>& runs,
+                  const std::vector<double>& scatter) {
+  Contrast c;
+  if (runs.empty()) return c;
+  std::vector<double> noise;
+  const std::vector<double> measured = corrected(scene, model, noise);
+  std::vector<std::vector<double>> seen;
+  double revolutions = 0;
+  for (const SignatureRun& run : runs) {
+    seen.push_back(observed_at(run.seen, scene.span));
+    revolutions += run.revolutions / double(runs.size());
+  }
+  const double watched = scene.measurement->revolutions > 0 ? scene.measurement->revolutions : revolutions;
+  double sum = 0;
+  for (std::size_t i = 0; i < measured.size(); ++i) {
+    double mean = 0, there = 0;
+    for (const auto& s : seen) {
+      mean += s[i] / double(seen.size());
+      there += std::abs(s[i]) > 1e-12;
+    }
+    if (std::isnan(measured[i]) || std::isnan(mean) || there < kMostlyThere * double(seen.size())) continue;
+    const double chance = scatter[i] * scatter[i] * (revolutions / watched + 1 / double(seen.size()));
+    const double z = (measured[i] - mean) / std::sqrt(chance + noise[i] * noise[i]);
+    if (!std::isfinite(z)) continue;
+    c.numbers.push_back(i);
+    c.measured.push_back(measured[i]);
+    c.simulated.push_back(mean);
+    c.z.push_back(z);
+    sum += z * z;
+  }
+  c.chi = std::sqrt(sum / double(c.numbers.size()));
+  return c;
+}
+
+}  // namespace tumble::diagnose

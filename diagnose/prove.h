@@ -1,0 +1,51 @@
+#pragma once
+#include <functional>
+#include <vector>
+
+#include "core/experiments.h"
+#include "diagnose/build_library.h"
+#include "diagnose/evidence.h"
+#include "diagnose/measurement.h"
+
+// The proof of a verdict: the model as it is said to be, simulated anew in every experiment, those held out included,
+// against what was measured there.
+namespace tumble::diagnose {
+
+// The uncertain keys' values and the guilty suspects' strengths, of an Explanation.
+struct Model {
+  Eigen::VectorXd places;
+  int lifter = 0;  // of suspects that turn with the drum
+};
+
+struct Scene {  // an experiment with all that it takes to simulate it under a model
+  const Measurement* measurement = nullptr;
+  std::vector<Suspect> suspects;  // of its own config: full strengths hang on it
+  std::vector<double> middle;     // of the uncertain keys
+  double span = kNotGiven;
+};
+
+// What makes the scene's mill that of the model, as --set takes it.
+std::vector<std::string> sets_of(const Scene& scene, const std::vector<UncertainKey>& uncertain, const Model& model);
+// The experiment's numbers as they would be without the errors of measurement that the model knows of.
+std::vector<double> corrected(const Scene& scene, const Model& model, std::vector<double>& noise);
+
+// `seeds` runs of each scene, all side by side; by scene. Runs that fail are left out.
+std::vector<std::vector<SignatureRun>> resimulate(const std::vector<Scene>& scenes,
+                                                  const std::vector<UncertainKey>& uncertain, const Model& model,
+                                                  std::size_t seeds, const MillWith& mill_with,
+                                                  const Progress& progress = {});
+
+// Of the numbers that the scene's experiment has: measured, mean of the runs, and z of the difference by what chance
+// does to a run (`scatter`, of one run of the library's length), to their mean, and by the measurement's own noise.
+struct Contrast {
+  std::vector<std::size_t> numbers;  // which
+  std::vector<double> measured, simulated, z;
+  double chi = kNotGiven;  // root of the mean of z^2: 1 is agreement
+};
+Contrast contrast(const Scene& scene, const Model& model, const std::vector<SignatureRun>& runs,
+                  const std::vector<double>& scatter);
+
+// What chance does to each number in one run: scatter about their own means of several sets of runs of one scene.
+std::vector<double> scatter_of(const std::vector<const std::vector<SignatureRun>*>& sets, double span);
+
+}  // namespace tumble::diagnose
