@@ -45,8 +45,10 @@ State look(const Problem& problem, const Eigen::VectorXd& x) {
   s.misfit = x.dot(s.gradient);
   for (const Measured& m : problem.measured) {
     const auto expected = m.response->at(problem.all(x));
-    const double variance = m.response->revolutions() / m.revolutions + expected.guess;
-    const Eigen::VectorXd rest = m.seen - expected.mean;
+    const bool shown = m.shift.size() > 0;
+    const double variance = m.response->revolutions() / m.revolutions + (shown ? m.shift_variance : expected.guess);
+    Eigen::VectorXd rest = m.seen - expected.mean;
+    if (shown) rest -= m.shift;
     Eigen::MatrixXd slope(rest.size(), n);
     for (Eigen::Index i = 0; i < n; ++i) slope.col(i) = expected.slope.col(problem.free[static_cast<std::size_t>(i)]);
     const double chi2 = rest.squaredNorm() / variance;

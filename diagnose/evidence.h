@@ -12,6 +12,9 @@ struct Measured {  // in one condition
   const Response* response = nullptr;
   Eigen::VectorXd seen;    // Response::whitened
   double revolutions = 0;  // that were watched
+  // Where simulations at the very places have shown how far off the polynomial is: by this (else empty), known so well.
+  Eigen::VectorXd shift = {};
+  double shift_variance = 0;
 };
 
 struct Explanation {

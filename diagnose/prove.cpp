@@ -5,8 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/error.h"
-#include "core/units.h"
+#include "core/quantile.h"
 #include "diagnose/in_turns.h"
 #include "diagnose/observe.h"
 
@@ -15,6 +14,12 @@ namespace {
 
 constexpr double kMostlyThere = 0.8;        // of the runs must show a number
 constexpr std::uint64_t kSeeds = 1u << 20;  // far from those of the library
+
+double mean_of(const std::vector<std::vector<double>>& seen, std::size_t i) {
+  double sum = 0;
+  for (const auto& s : seen) sum += s[i];
+  return sum / double(seen.size());
+}
 
 double strength_at(const Scene& scene, const Model& model, std::size_t suspect) {
   return model.places[static_cast<Eigen::Index>(scene.middle.size() + suspect)];
@@ -62,10 +67,9 @@ std::vector<double> corrected(const Scene& scene, const Model& model, std::vecto
   return turned_on(layout, seen.value, model.lifter);
 }
 
-std::vector<std::vector<SignatureRun>> resimulate(const std::vector<Scene>& scenes,
-                                                  const std::vector<UncertainKey>& uncertain, const Model& model,
-                                                  std::size_t seeds, const MillWith& mill_with,
-                                                  const Progress& progress) {
+std::vector<Replicas> resimulate(const std::vector<Scene>& scenes, const std::vector<UncertainKey>& uncertain,
+                                 const Model& model, std::size_t seeds, const MillWith& mill_with,
+                                 const Progress& progress) {
   std::vector<SignatureRun> all(scenes.size() * seeds);
   in_turns(all.size(), progress, [&](std::size_t i, const Progress& own) {
     const Scene& scene = scenes[i / seeds];
@@ -73,53 +77,65 @@ std::vector<std::vector<SignatureRun>> resimulate(const std::vector<Scene>& scen
     config.run.seed = kSeeds + i;
     all[i] = run_signature(config, own, Watched::kRight);
   });
-  std::vector<std::vector<SignatureRun>> by_scene(scenes.size());
-  for (std::size_t i = 0; i < all.size(); ++i)
-    if (all[i].error.empty()) by_scene[i / seeds].push_back(std::move(all[i]));
+  std::vector<Replicas> by_scene(scenes.size());
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    Replicas& replicas = by_scene[i / seeds];
+    if (!all[i].error.empty()) continue;
+    replicas.seen.push_back(observed_at(all[i].seen, scenes[i / seeds].span));
+    replicas.revolutions += (all[i].revolutions - replicas.revolutions) / double(replicas.seen.size());
+  }
   return by_scene;
 }
 
-std::vector<double> scatter_of(const std::vector<const std::vector<SignatureRun>*>& sets, double span) {
+std::vector<double> scatter_of(const std::vector<const Replicas*>& sets) {
   std::vector<double> sum;
   double freedom = 0;
-  for (const auto* runs : sets) {
-    if (runs->size() < 2) continue;
-    std::vector<std::vector<double>> seen;
-    for (const SignatureRun& run : *runs) seen.push_back(observed_at(run.seen, span));
-    sum.resize(seen.front().size(), 0);
+  for (const Replicas* set : sets) {
+    if (set->seen.size() < 2) continue;
+    sum.resize(set->seen.front().size(), 0);
     for (std::size_t i = 0; i < sum.size(); ++i) {
-      double mean = 0;
-      for (const auto& s : seen) mean += s[i] / double(seen.size());
-      for (const auto& s : seen) sum[i] += (s[i] - mean) * (s[i] - mean);
+      const double mean = mean_of(set->seen, i);
+      for (const auto& s : set->seen) sum[i] += (s[i] - mean) * (s[i] - mean);
     }
-    freedom += double(runs->size()) - 1;
+    freedom += double(set->seen.size()) - 1;
   }
   for (double& s : sum) s = std::sqrt(s / freedom);
   return sum;
 }
 
-Contrast contrast(const Scene& scene, const Model& model, const std::vector<SignatureRun>& runs,
-                  const std::vector<double>& scatter) {
+double chance_limit(const std::vector<const Replicas*>& sets, const std::vector<double>& scatter, std::size_t first,
+                    std::size_t count) {
+  std::vector<double> largest;
+  for (const Replicas* set : sets) {
+    const double n = double(set->seen.size());
+    if (n < 2) continue;
+    for (const auto& run : set->seen) {
+      double most = 0;
+      for (std::size_t i = first; i < first + count; ++i) {
+        // Against the mean of the others: n / (n - 1) times its distance from the mean of all.
+        const double z = (run[i] - mean_of(set->seen, i)) * std::sqrt(n / (n - 1)) / scatter[i];
+        if (std::isfinite(z)) most = std::max(most, std::abs(z));
+      }
+      largest.push_back(most);
+    }
+  }
+  return quantile_of(std::move(largest), 0.95);
+}
+
+Contrast contrast(const Scene& scene, const Model& model, const Replicas& runs, const std::vector<double>& scatter) {
   Contrast c;
-  if (runs.empty()) return c;
+  if (runs.seen.empty()) return c;
   std::vector<double> noise;
   const std::vector<double> measured = corrected(scene, model, noise);
-  std::vector<std::vector<double>> seen;
-  double revolutions = 0;
-  for (const SignatureRun& run : runs) {
-    seen.push_back(observed_at(run.seen, scene.span));
-    revolutions += run.revolutions / double(runs.size());
-  }
-  const double watched = scene.measurement->revolutions > 0 ? scene.measurement->revolutions : revolutions;
+  const double watched = scene.measurement->revolutions > 0 ? scene.measurement->revolutions : runs.revolutions;
+  const double n = double(runs.seen.size());
   double sum = 0;
   for (std::size_t i = 0; i < measured.size(); ++i) {
-    double mean = 0, there = 0;
-    for (const auto& s : seen) {
-      mean += s[i] / double(seen.size());
-      there += std::abs(s[i]) > 1e-12;
-    }
-    if (std::isnan(measured[i]) || std::isnan(mean) || there < kMostlyThere * double(seen.size())) continue;
-    const double chance = scatter[i] * scatter[i] * (revolutions / watched + 1 / double(seen.size()));
+    const double mean = mean_of(runs.seen, i);
+    double there = 0;
+    for (const auto& s : runs.seen) there += std::abs(s[i]) > 1e-12;
+    if (std::isnan(measured[i]) || std::isnan(mean) || there < kMostlyThere * n) continue;
+    const double chance = scatter[i] * scatter[i] * (runs.revolutions / watched + 1 / n);
     const double z = (measured[i] - mean) / std::sqrt(chance + noise[i] * noise[i]);
     if (!std::isfinite(z)) continue;
     c.numbers.push_back(i);

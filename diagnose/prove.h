@@ -29,11 +29,15 @@ std::vector<std::string> sets_of(const Scene& scene, const std::vector<Uncertain
 // The experiment's numbers as they would be without the errors of measurement that the model knows of.
 std::vector<double> corrected(const Scene& scene, const Model& model, std::vector<double>& noise);
 
+struct Replicas {                         // runs of one scene under one model, alike but for their packing
+  std::vector<std::vector<double>> seen;  // by run: numbers of an Observation
+  double revolutions = 0;                 // of one, that were looked at
+};
+
 // `seeds` runs of each scene, all side by side; by scene. Runs that fail are left out.
-std::vector<std::vector<SignatureRun>> resimulate(const std::vector<Scene>& scenes,
-                                                  const std::vector<UncertainKey>& uncertain, const Model& model,
-                                                  std::size_t seeds, const MillWith& mill_with,
-                                                  const Progress& progress = {});
+std::vector<Replicas> resimulate(const std::vector<Scene>& scenes, const std::vector<UncertainKey>& uncertain,
+                                 const Model& model, std::size_t seeds, const MillWith& mill_with,
+                                 const Progress& progress = {});
 
 // Of the numbers that the scene's experiment has: measured, mean of the runs, and z of the difference by what chance
 // does to a run (`scatter`, of one run of the library's length), to their mean, and by the measurement's own noise.
@@ -42,10 +46,14 @@ struct Contrast {
   std::vector<double> measured, simulated, z;
   double chi = kNotGiven;  // root of the mean of z^2: 1 is agreement
 };
-Contrast contrast(const Scene& scene, const Model& model, const std::vector<SignatureRun>& runs,
-                  const std::vector<double>& scatter);
+Contrast contrast(const Scene& scene, const Model& model, const Replicas& runs, const std::vector<double>& scatter);
 
 // What chance does to each number in one run: scatter about their own means of several sets of runs of one scene.
-std::vector<double> scatter_of(const std::vector<const std::vector<SignatureRun>*>& sets, double span);
+std::vector<double> scatter_of(const std::vector<const Replicas*>& sets);
+
+// |z| that chance alone exceeds somewhere among the numbers [first, first + count) in one diagnosis of twenty: of each
+// run against the others of its set.
+double chance_limit(const std::vector<const Replicas*>& sets, const std::vector<double>& scatter, std::size_t first,
+                    std::size_t count);
 
 }  // namespace tumble::diagnose
