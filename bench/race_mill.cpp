@@ -100,8 +100,10 @@ Config config_of(const PeerCase& c, const Options& o) {
   const Effect* effect = find_effect(o.effect);
   if (!effect) throw InputError("--effect", "knows no \"" + o.effect + "\"; see tumble effects");
   for (const EffectParameter& p : effect->parameters) {
-    if (p.list && p.strength) config.effects[o.effect][p.name] = {1, 2};
-    if (!std::isnan(p.typical)) config.effects[o.effect][p.name] = {p.typical};
+    if (p.is_column() || (p.list && p.strength))
+      config.effects[o.effect][p.name] = typical_list(p);
+    else if (!std::isnan(p.typical))
+      config.effects[o.effect][p.name] = {p.typical};
   }
   return config;
 }

@@ -1,6 +1,7 @@
 #include "core/effects.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <cmath>
 #include <memory>
@@ -38,6 +39,7 @@ std::string wrapped(const std::string& text, std::size_t first, std::size_t inde
 
 std::string range_of(const EffectParameter& p) {
   const std::string numbers = fmt::format("{:g} to {:g}", p.least, p.most);
+  if (p.is_column()) return "list, " + numbers;
   return p.list ? "list of whole numbers, " + numbers : p.whole ? "whole number, " + numbers : numbers;
 }
 
@@ -48,14 +50,15 @@ std::string default_of(const EffectParameter& p) {
 }
 
 std::string value_of(const EffectParameter& p) {
-  return p.list ? "[1, 2]" : std::isfinite(p.typical) ? fmt::format("{:g}", p.typical) : "";
+  if (p.list) return fmt::format("[{:g}]", fmt::join(typical_list(p), ", "));
+  return std::isfinite(p.typical) ? fmt::format("{:g}", p.typical) : "";
 }
 
-// Lines for MILL.toml at typical strength. A list that is no strength (which lifters are worn) is left out: all.
+// Lines for MILL.toml at typical strength. Lifters that are no strength (the worn ones) are left out: all.
 std::string example_of(const Effect& effect) {
   std::string lines = fmt::format("[effects.{}]\n", effect.name);
   for (const EffectParameter& p : effect.parameters) {
-    if (p.list && !p.strength) continue;
+    if (p.list && p.whole && !p.strength) continue;
     if (const std::string value = value_of(p); !value.empty()) lines += fmt::format("{} = {}\n", p.name, value);
   }
   return lines;

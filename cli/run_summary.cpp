@@ -27,7 +27,9 @@ Json effects_of(const Config& config) {
     if (!has_effect(config, effect.name)) continue;
     Json& of = all[effect.name] = Json::object();
     for (const EffectParameter& p : effect.parameters) {
-      if (p.list)
+      if (p.is_column())
+        of[p.name] = effect_column(config, effect.name, p.name);
+      else if (p.list)
         of[p.name] = effect_list(config, effect.name, p.name);
       else
         of[p.name] = effect_value(config, effect.name, p.name);

@@ -71,6 +71,29 @@ void check_contact(const ConfigChecker& c, const Contact& k) {
   c.range("contact.wall.restitution", k.wall.restitution, 0.01, 1, "");
 }
 
+// Columns that are given have a row for each of the ascending speeds.
+void check_table(const ConfigChecker& c, const std::string& table, const Effect& effect,
+                 const EffectSettings& settings) {
+  const auto key = std::find_if(effect.parameters.begin(), effect.parameters.end(),
+                                [](const EffectParameter& p) { return p.is_column() && !p.strength; });
+  if (key == effect.parameters.end()) return;
+  const auto given = settings.find(key->name);
+  const std::vector<double> rows = given == settings.end() ? std::vector<double>{} : given->second;
+  const std::string place = table + "." + key->name;
+  if (rows.size() > kMostRows)
+    c.fail(place, "has " + std::to_string(rows.size()) + " rows, must have at most " + std::to_string(kMostRows));
+  for (std::size_t i = 1; i < rows.size(); ++i)
+    if (!(rows[i] > rows[i - 1]))
+      c.fail(place, "goes from " + shown(rows[i - 1]) + " to " + shown(rows[i]) + ", must ascend");
+  for (const EffectParameter& p : effect.parameters) {
+    const auto values = settings.find(p.name);
+    if (!p.is_column() || !p.strength || values == settings.end() || values->second.empty()) continue;
+    if (values->second.size() != rows.size())
+      c.fail(table + "." + p.name, "has " + std::to_string(values->second.size()) + " rows and " + key->name + " " +
+                                       std::to_string(rows.size()) + ", must have as many");
+  }
+}
+
 void check_effects(const ConfigChecker& c, const Config& config) {
   for (const auto& [name, settings] : config.effects) {
     const Effect* effect = find_effect(name);
@@ -86,9 +109,8 @@ void check_effects(const ConfigChecker& c, const Config& config) {
       for (const double v : given->second) c.range(table + "." + p.name, v, p.least, p.most, p.unit);
       if (!p.list && given->second.size() != 1) c.fail(table + "." + p.name, "must be one number");
       for (const double v : given->second)
-        if ((p.list || p.whole) && v != std::floor(v))
-          c.fail(table + "." + p.name, "is " + shown(v) + ", must be whole");
-      if (!p.list || config.mill.lifters.count < 1) continue;
+        if (p.whole && v != std::floor(v)) c.fail(table + "." + p.name, "is " + shown(v) + ", must be whole");
+      if (!p.list || p.is_column() || config.mill.lifters.count < 1) continue;
       for (const double v : given->second)
         if (v >= config.mill.lifters.count)
           c.fail(table + "." + p.name, "names lifter " + shown(v) + ", the mill's lifters are 0 to " +
@@ -98,6 +120,7 @@ void check_effects(const ConfigChecker& c, const Config& config) {
       if (!find_parameter(*effect, key))
         c.fail(table + "." + key, "no such parameter; see `tumble effects " + name + "`");
     if (!any) c.fail(table, "has no strength; give " + strengths);
+    check_table(c, table, *effect, settings);
   }
   if (config.contact.law == ContactLaw::kHertz && config.effects.contains("hertz_contact"))
     c.fail("contact.law", "is \"hertz\", the whole of effects.hertz_contact; keep one of the two");
@@ -160,7 +183,7 @@ double speed_fraction(const Mill& mill) {
 
 Contact ball_contact(const Config& config) {
   Contact c = config.contact;
-  c.friction *= std::max(0.0, 1 - c.friction_drop_at_critical * speed_fraction(config.mill));
+  c.friction *= friction_share(config);
   return c;
 }
 
@@ -172,7 +195,7 @@ Contact wall_contact(const Config& config) {
   c.tangential_stiffness = or_else(contact.wall.tangential_stiffness, contact.tangential_stiffness);
   c.friction = or_else(contact.wall.friction, contact.friction);
   c.restitution = or_else(contact.wall.restitution, contact.restitution);
-  c.friction *= std::max(0.0, 1 - c.friction_drop_at_critical * speed_fraction(config.mill));
+  c.friction *= friction_share(config);
   return c;
 }
 

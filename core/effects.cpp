@@ -70,6 +70,31 @@ constexpr std::array kRipple{
 constexpr std::array kMissing{
     P{"lifters", "", 0, 1e5, kNone, "numbers of the lifters that are not there", kNone, true, true, true}};
 
+constexpr P column(const char* name, const char* unit, double least, double most, double typical, const char* meaning) {
+  return {name, unit, least, most, kNone, meaning, typical, true, true, false};
+}
+constexpr P at_speeds(const char* meaning) {
+  return {"speed", "m/s", 0, 1e3, kNone, meaning, kNone, false, true, false};
+}
+
+constexpr std::array kTabulatedFriction{
+    at_speeds("v: sliding speeds of the contact, ascending"),
+    column("friction", "", 0, 10, 0.2, "mu between balls at these speeds; contact.friction where not given"),
+    column("wall_friction", "", 0, 10, 0.2, "mu at the wall at these speeds; contact.wall.friction where not given")};
+
+constexpr std::array kTabulatedRestitution{
+    at_speeds("v: normal speeds at the first touch, ascending"),
+    column("restitution", "", 0.01, 1, 0.8, "e between balls at these speeds; contact.restitution where not given"),
+    column("wall_restitution", "", 0.01, 1, 0.4,
+           "e at the wall at these speeds; contact.wall.restitution where not given")};
+
+constexpr std::array kTabulatedDrag{
+    at_speeds("v: speeds of the ball in the lab, ascending"),
+    column("coefficient", "kg/s", 0, 1e6, 0.02,
+           "c = F / v of a ball of the charge's number-mean radius at these speeds"),
+    P{"radius_power", "", 0, 3, 1, "n: 1 as Stokes' drag, 2 as Newton's, 3 the same deceleration for all", 1, false,
+      false, true}};
+
 const std::array kEffects{
     Effect{"rolling_resistance", "contact", "a couple that opposes rolling of ball on ball and ball on wall",
            "M = -k_r theta_r, |M| <= mu_r R |F_n|; k_r = k_t R^2, R = r_i r_j / (r_i + r_j), at the wall r",
@@ -113,6 +138,15 @@ const std::array kEffects{
            "kinematics of a drive with a tooth or coupling fault", kRipple},
     Effect{"missing_lifters", "shell", "lifters that have been lost", "the shell without the lifters listed",
            "geometry", kMissing},
+    Effect{"tabulated_friction", "contact", "friction by a table against the sliding speed of the contact",
+           "mu = mu(v_t), linear between the table's speeds and constant outside", "a measured law",
+           kTabulatedFriction},
+    Effect{"tabulated_restitution", "contact", "restitution by a table against the normal speed of the impact",
+           "e = e(v_n), v_n at first touch; linear between the table's speeds and constant outside", "a measured law",
+           kTabulatedRestitution},
+    Effect{"tabulated_drag", "ball", "drag by a table against the ball's speed",
+           "F = -c(|v|) (r / r_mean)^n v, c linear between the table's speeds and constant outside", "a measured law",
+           kTabulatedDrag},
 };
 
 const EffectParameter& parameter_of(const std::string& name, const std::string& parameter) {
@@ -158,16 +192,30 @@ double effect_value(const Config& config, const std::string& name, const std::st
   return std::isnan(p.otherwise) ? 0 : p.otherwise;
 }
 
+double friction_share(const Config& config) {
+  return std::max(0.0, 1 - config.contact.friction_drop_at_critical * speed_fraction(config.mill));
+}
+
 double hertz_share(const Config& config) {
   return config.contact.law == ContactLaw::kHertz ? 1 : effect_value(config, "hertz_contact", "share");
 }
 
-std::vector<int> effect_list(const Config& config, const std::string& name, const std::string& parameter) {
+std::vector<double> effect_column(const Config& config, const std::string& name, const std::string& parameter) {
   parameter_of(name, parameter);
+  const auto* values = given(config, name, parameter);
+  return values ? *values : std::vector<double>{};
+}
+
+std::vector<int> effect_list(const Config& config, const std::string& name, const std::string& parameter) {
   std::vector<int> list;
-  if (const auto* values = given(config, name, parameter))
-    for (const double v : *values) list.push_back(static_cast<int>(v));
+  for (const double v : effect_column(config, name, parameter)) list.push_back(static_cast<int>(v));
   return list;
+}
+
+std::vector<double> typical_list(const EffectParameter& p) {
+  if (p.whole) return {1, 2};
+  if (!p.strength) return {0, 0.25, 1};
+  return {p.typical, 0.8 * p.typical, 0.6 * p.typical};
 }
 
 }  // namespace tumble

@@ -75,6 +75,7 @@ std::vector<Suspect> suspects_of(const Config& mill) {
   for (const Effect& effect : all_effects()) {
     if (has_effect(mill, effect.name)) continue;
     Suspect s = of_effect(effect);
+    // A table can say anything; missing lifters come below.
     if (s.sets.empty()) continue;
     if (s.name == "hertz_contact" && mill.contact.law == ContactLaw::kHertz) continue;
     const bool no_lifters = mill.mill.lifters.profile == LifterProfile::kNone;

@@ -132,13 +132,17 @@ class Reader {
     const std::string unit = *parameter->unit ? std::string(" in ") + parameter->unit : "";
     const std::string wanted = fmt::format("a {}{}, {:g} to {:g}", parameter->whole ? "whole number" : "number", unit,
                                            parameter->least, parameter->most);
+    const std::string list_of =
+        parameter->is_column() ? "numbers" + unit + " such as [0.1, 0.5]" : "lifter numbers such as [0, 3]";
     std::vector<double> values;
     if (parameter->list) {
       const auto* list = node.as_array();
-      if (!list) fail(node, path, "found " + found(node) + ", must be a list of lifter numbers such as [0, 3]");
-      for (const toml::node& entry : *list) values.push_back(number(path, "lifter numbers such as [0, 3]", entry));
-      std::sort(values.begin(), values.end());
-      values.erase(std::unique(values.begin(), values.end()), values.end());
+      if (!list) fail(node, path, "found " + found(node) + ", must be a list of " + list_of);
+      for (const toml::node& entry : *list) values.push_back(number(path, list_of, entry));
+      if (!parameter->is_column()) {
+        std::sort(values.begin(), values.end());
+        values.erase(std::unique(values.begin(), values.end()), values.end());
+      }
     } else {
       values.push_back(number(path, wanted, node));
     }

@@ -9,6 +9,8 @@
 #include "core/error.h"
 #include "core/units.h"
 #include "sim/charge.h"
+#include "sim/effects/tabulated_friction.h"
+#include "sim/effects/tabulated_restitution.h"
 #include "sim/effects/wall_friction.h"
 
 namespace tumble::sim {
@@ -34,8 +36,9 @@ Mean mean_ball(const Config& config, const std::vector<int>& counts) {
   return {mean.radius / balls, mean.mass / balls};
 }
 
-// `friction`: in force at this kind of contact, whatever the contact section says.
-ContactModel model_of(const Config& config, const Contact& contact, double friction, const Mean& mean) {
+ContactModel model_of(const Config& config, bool at_wall, const Mean& mean) {
+  const Contact contact = at_wall ? wall_contact(config) : ball_contact(config);
+  const double friction = at_wall ? friction_at_wall(config, contact.friction) : contact.friction;
   ContactModel m;
   m.springs = {contact.normal_stiffness, contact.tangential_stiffness, friction, contact.restitution};
   m.hertz = make_hertz_contact(config, contact.normal_stiffness, mean.radius, mean.mass);
@@ -43,6 +46,8 @@ ContactModel model_of(const Config& config, const Contact& contact, double frict
   m.cohesion = make_cohesion(config, mean.radius);
   m.friction = make_friction_weakening(config);
   m.rolling = make_rolling_resistance(config);
+  m.tabulated_friction = make_tabulated_friction(config, at_wall);
+  m.tabulated_restitution = make_tabulated_restitution(config, at_wall);
   return m;
 }
 
@@ -50,6 +55,7 @@ ContactModel model_of(const Config& config, const Contact& contact, double frict
 // contact is stiffest where the heaviest ball comes in fastest.
 LinearSpringDashpot stiffest(const ContactModel& model, const Config& config, double fastest) {
   LinearSpringDashpot s = model.springs;
+  if (model.tabulated_restitution.on()) s.restitution = model.tabulated_restitution.least();
   s.restitution *= 1 - model.restitution.drop;
   if (model.hertz.share == 0) return s;
   double largest = 0, heaviest = 0;
@@ -70,6 +76,8 @@ double largest_time_step(const BodyEffects& body, const BallClass& ball, double 
   for (const FluidDrag& fluid : {body.drag, body.pool.slurry})
     per_mass += std::max(fluid.per_velocity(ball.radius, fastest) / ball.mass,
                          fluid.per_spin(ball.radius) / inertia(ball.mass, ball.radius));
+  if (body.tabulated.on())
+    per_mass += body.tabulated.share_of(ball.radius) * body.tabulated.coefficient.most() / ball.mass;
   return 0.1 / per_mass;
 }
 
@@ -98,18 +106,18 @@ double largest_time_step(const LinearSpringDashpot& law, double effective_mass) 
 }
 
 MillModel make_mill_model(const Config& config) {
-  const Contact ball = ball_contact(config), wall = wall_contact(config);
+  const Contact wall = wall_contact(config);
   const std::vector<int> counts = class_counts(config);
   const Mean mean = mean_ball(config, counts);
   need_tangential_spring(config, wall);
 
   MillModel model;
   model.shell = make_shell(make_mill_shape(config));
-  model.ball = model_of(config, ball, ball.friction, mean);
-  model.wall = model_of(config, wall, friction_at_wall(config, wall.friction), mean);
+  model.ball = model_of(config, false, mean);
+  model.wall = model_of(config, true, mean);
   model.gravity = kGravity;
   model.body = {make_fluid_drag(config), make_slurry_pool(config, kGravity),
-                make_end_wall_friction(config, wall.tangential_stiffness)};
+                make_end_wall_friction(config, wall.tangential_stiffness), make_tabulated_drag(config, mean.radius)};
   model.ripple = make_speed_ripple(config);
   model.speed = rad_s_from_rpm(speed_rpm(config.mill));
   if (!(model.speed > 0))
@@ -152,7 +160,7 @@ std::vector<Cause> causes_of(const MillModel& model) {
   std::vector<Cause> causes;
   for (std::size_t c = 0; c < kPlainCauses; ++c) causes.push_back(static_cast<Cause>(c));
   if (model.ball.rolling.coefficient != 0) causes.push_back(Cause::kRolling);
-  if (model.body.drag.on()) causes.push_back(Cause::kFluidDrag);
+  if (model.body.dragged()) causes.push_back(Cause::kFluidDrag);
   if (model.body.pool.on()) causes.push_back(Cause::kSlurryPool);
   if (model.body.ends.on()) causes.push_back(Cause::kEndWalls);
   return causes;

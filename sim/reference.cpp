@@ -125,7 +125,7 @@ Body body(ReferenceMill& mill, std::size_t i, const ShellPose& pose, double pres
     b.fy = -ends.stiffness * (sy * pose.cos + sx * pose.sin);
     b.ends_torque = c.x[i] * b.fy - c.y[i] * b.fx;
   }
-  if (!m.body.drag.on() && !m.body.pool.on()) return b;
+  if (!m.body.in_fluid()) return b;
   const double vx = c.vx[i] + c.ax[i], vy = c.vy[i] + c.ay[i], w = c.spin[i] + c.alpha[i];
   const double v = std::sqrt(vx * vx + vy * vy), depth = m.body.pool.depth(c.y[i], r);
   double lift = 0;
@@ -133,6 +133,7 @@ Body body(ReferenceMill& mill, std::size_t i, const ShellPose& pose, double pres
     b.drag = m.body.drag.per_velocity(r, v);
     b.drag_spin = m.body.drag.per_spin(r);
   }
+  if (m.body.tabulated.on()) b.drag += m.body.tabulated.per_velocity(r, v);
   if (m.body.pool.on() && depth > 0) {
     const double share = m.body.pool.volume(depth, r) / m.body.pool.volume(2 * r, r);
     b.pool = share * m.body.pool.slurry.per_velocity(r, v);

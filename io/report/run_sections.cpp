@@ -334,8 +334,9 @@ PageSection mill_section(const RunReport& r) {
 std::string value_in_words(const Config& c, const Effect& effect, const EffectParameter& p) {
   if (!p.list) return fmt::format("{:g}", effect_value(c, effect.name, p.name));
   std::string out;
-  for (const int k : effect_list(c, effect.name, p.name)) out += (out.empty() ? "" : ", ") + std::to_string(k);
-  return out.empty() ? "all" : out;
+  for (const double v : effect_column(c, effect.name, p.name))
+    out += (out.empty() ? "" : ", ") + fmt::format("{:g}", v);
+  return out.empty() ? (p.is_column() ? "not given" : "all") : out;
 }
 
 PageSection effects_section(const Config& c) {

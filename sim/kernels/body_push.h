@@ -61,6 +61,7 @@ FluidPush<Real> fluid_push(const Memory& at, const ChargeView& c, const KickTerm
     p.drag = body.drag.per_velocity(r, speed);
     p.drag_spin = body.drag.per_spin(r);
   }
+  if (body.tabulated.on()) p.drag += body.tabulated.per_velocity(r, speed);
   if (body.pool.on()) {
     const Real depth = body.pool.depth(y, r);
     const Real share = body.pool.volume(depth, r) / body.pool.volume(Real(2 * r), r);

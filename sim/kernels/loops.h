@@ -288,7 +288,7 @@ struct Loops {
   }
   static void kick(const ChargeView& c, const KickTerms& terms, const ExactSums& exact, const ForceView& force,
                    int first, int last, KickSums& sums) {
-    const bool ends = terms.body->ends.on(), fluids = terms.body->drag.on() || terms.body->pool.on();
+    const bool ends = terms.body->ends.on(), fluids = terms.body->in_fluid();
     const auto loop = ends ? (fluids ? kick_by<true, true> : kick_by<true, false>)
                            : (fluids ? kick_by<false, true> : kick_by<false, false>);
     loop(c, terms, exact, force, first, last, sums);

@@ -7,6 +7,7 @@
 #include "sim/effects/impact_restitution.h"
 #include "sim/effects/rolling_resistance.h"
 #include "sim/laws/linear_spring_dashpot.h"
+#include "sim/laws/table.h"
 
 // The law of one kind of contact (ball on ball, or ball on wall): the springs and dashpot of the 1992 paper, and the
 // effects that change them. Each effect is one member whose zeros switch it off; with all of them off the law is
@@ -14,9 +15,9 @@
 //
 //   pressure    P = F(d) + C(d) v_n          F: spring, linear and Hertzian in shares; C: see hertz_contact.h
 //   normal      F_n = P - F_c                F_c: cohesion
-//   tangential  |F_t| <= mu(v_t) |P|         mu falls with the sliding speed: friction_weakening
+//   tangential  |F_t| <= mu(v_t) |P|         mu falls with the sliding speed: friction_weakening, tabulated_friction
 //   rolling     |M| <= mu_r R |P|            rolling_resistance
-//   restitution e(v_n at first touch)        impact_restitution
+//   restitution e(v_n at first touch)        impact_restitution, tabulated_restitution
 //
 // Losses are the trapezoid of the force over each step's change of overlap, less what the springs hold: that is the
 // work which central differences do on the bodies (linear_spring_dashpot.h), whatever the force law.
@@ -29,12 +30,23 @@ struct ContactModel {
   Cohesion cohesion;
   FrictionWeakening friction;
   RollingResistance rolling;
+  Table tabulated_friction, tabulated_restitution;  // in place of the springs' friction and restitution
 
   ContactModel() = default;
   ContactModel(const LinearSpringDashpot& s) : springs(s) {}  // implicit: the plain law
   bool plain() const {
     return hertz.share == 0 && restitution.drop == 0 && cohesion.per_radius == 0 && friction.drop == 0 &&
-           rolling.coefficient == 0;
+           rolling.coefficient == 0 && !tabulated_friction.on() && !tabulated_restitution.on();
+  }
+  // Of an impact that begins with this normal speed [m/s].
+  double restitution_at(double speed) const {
+    const double e = tabulated_restitution.on() ? tabulated_restitution.at(std::abs(speed)) : springs.restitution;
+    return restitution.drop == 0 ? e : e * restitution.share_at(speed);
+  }
+  // Of a contact that slides at this speed, before it weakens [m/s].
+  template <class Real>
+  Real friction_at(const Real& speed) const {
+    return tabulated_friction.on() ? tabulated_friction.at(speed) : Real(springs.friction);
   }
 };
 
@@ -64,9 +76,9 @@ Real rolling_stiffness(const ContactModel& law, const Real& effective_radius) {
 
 // C of a contact that begins: at its own restitution.
 inline double damping_from(const ContactModel& law, const Touch& now, const Pairing& pair, double time_step) {
-  if (law.restitution.drop == 0) return now.damping;
+  if (law.restitution.drop == 0 && !law.tabulated_restitution.on()) return now.damping;
   LinearSpringDashpot slower = law.springs;
-  slower.restitution *= law.restitution.share_at(now.closing);
+  slower.restitution = law.restitution_at(now.closing);
   return Damping(slower, time_step).of(pair.effective_mass);
 }
 
@@ -96,8 +108,9 @@ BasicReaction<Real> touch(const ContactModel& law, const BasicTouch<Real>& now, 
   r.normal_loss =
       0.5 * (terms.force + r.normal) * (d - (first ? d - now.approach : state.overlap)) - (stored - terms.stored);
 
-  Real limit = s.friction * abs(pressure);
-  if (law.friction.drop != 0) limit *= law.friction.share_at(Real(abs(now.slide) / time_step));
+  const Real sliding = abs(now.slide) / time_step;
+  Real limit = law.friction_at(sliding) * abs(pressure);
+  if (law.friction.drop != 0) limit *= law.friction.share_at(sliding);
   const double k_t = s.tangential_stiffness;
   const Real wound = state.spring + now.slide;
   const Real held = held_within(first ? touched_share(now) * wound : wound, limit, k_t);

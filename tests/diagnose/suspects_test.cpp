@@ -27,7 +27,8 @@ Config mill() {
 
 TEST(Suspects, AreAllEffectsThatHaveAStrengthAndAllErrorsOfMeasurement) {
   const std::set<std::string> names = names_of(suspects_of(mill()));
-  for (const Effect& e : all_effects()) EXPECT_TRUE(names.contains(e.name)) << e.name;
+  for (const Effect& e : all_effects())  // a table can say anything
+    EXPECT_EQ(names.contains(e.name), !std::string(e.name).starts_with("tabulated")) << e.name;
   for (const char* artefact :
        {"camera_scale", "camera_rotation", "frame_clock", "filling_error", "speed_error", "torque_offset"})
     EXPECT_TRUE(names.contains(artefact)) << artefact;

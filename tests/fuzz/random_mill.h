@@ -136,6 +136,26 @@ inline void draw_effects(Random& random, Config& c, double share) {
     if (name == "speed_ripple")
       return {{"amplitude", even(0, 0.99)}, {"order", {double(1 + random.below(40))}}, {"phase_deg", even(-180, 180)}};
     if (name == "missing_lifters") return {{"lifters", lifters()}};
+    const auto column = [&](std::size_t rows, double low, double high) {
+      std::vector<double> values;
+      for (std::size_t k = 0; k < rows; ++k) values.push_back(random.uniform(low, high));
+      return values;
+    };
+    if (name.starts_with("tabulated")) {
+      const std::size_t rows = 1 + random.below(kMostRows);
+      std::vector<double> at{random.uniform(0, 0.1) * speed};
+      while (at.size() < rows) at.push_back(at.back() + random.uniform(1e-6, 0.2) * speed);
+      if (name == "tabulated_friction")
+        return {{"speed", at},
+                {"friction", column(rows, 0, 1)},
+                {"wall_friction", column(chance(random, 0.5) ? rows : 0, 0, 1)}};
+      if (name == "tabulated_restitution")
+        return {{"speed", at},
+                {"restitution", column(rows, 0.01, 1)},
+                {"wall_restitution", column(chance(random, 0.5) ? rows : 0, 0.01, 1)}};
+      return {
+          {"speed", at}, {"coefficient", column(rows, 0, weight / speed)}, {"radius_power", {double(random.below(4))}}};
+    }
     throw std::logic_error("the fuzzer does not know the effect " + name);
   };
   for (const Effect& effect : all_effects()) {

@@ -44,7 +44,7 @@ TEST(Effects, EachHasAnExampleWithItAlone) {
     // One strength at least is the typical one, and no parameter goes unnamed.
     bool typical = false;
     for (const EffectParameter& p : effect.parameters) {
-      typical |= p.list || (p.strength && effect_value(config, effect.name, p.name) == p.typical);
+      typical |= (p.list && p.strength) || (p.strength && effect_value(config, effect.name, p.name) == p.typical);
       EXPECT_TRUE(says(text_of(path), std::string(p.name) + " = ")) << path << ": " << p.name;
     }
     EXPECT_TRUE(typical) << path;

@@ -15,7 +15,11 @@ namespace tumble {
 inline EffectSettings settings_of(const Effect& effect, double strength) {
   EffectSettings settings;
   for (const EffectParameter& p : effect.parameters) {
-    if (p.list) {
+    if (p.is_column()) {  // the table's last row at `strength` times the way that it typically falls
+      settings[p.name] = typical_list(p);
+      if (p.strength && strength == 0) settings[p.name].clear();
+      if (p.strength && strength > 0) settings[p.name].back() = std::max(p.least, p.typical * (1 - 0.4 * strength));
+    } else if (p.list) {
       settings[p.name] = strength > 0 && p.strength ? std::vector<double>{8, 9} : std::vector<double>{};
       if (!p.strength) settings.erase(p.name);
     } else {
