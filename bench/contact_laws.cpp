@@ -3,6 +3,7 @@
 #include <atomic>
 #include <cmath>
 #include <cstdio>
+#include <ctime>
 #include <mutex>
 
 #include "core/parallel_for.h"
@@ -24,6 +25,12 @@ using diagnose::ContactLaws;
 
 constexpr double kSpinNoiseDeg = 0.5;  // of an angle's change from frame to frame
 
+double cpu_seconds() {
+  timespec t{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+  return double(t.tv_sec) + 1e-9 * double(t.tv_nsec);
+}
+
 double normal(Random& random) {
   return std::sqrt(-2 * std::log(1 - random.uniform())) * std::cos(2 * kPi * random.uniform());
 }
@@ -33,6 +40,7 @@ struct Seen {
   diagnose::LawNumbers with_noise, without;
   std::vector<diagnose::FoundLaw> found;
   std::size_t flights = 0, balls = 0, wall = 0;
+  double watching = 0, simulating = 0;  // [s]
 };
 
 Seen watch(const Config& truth, const Config& model, double noise, std::uint64_t seed) {
@@ -43,7 +51,9 @@ Seen watch(const Config& truth, const Config& model, double noise, std::uint64_t
   Random random(seed * 7919);
   sim::RunSink sink;
   sink.setup = [&](const RunSetup& s) { radius = s.balls.radius; };
+  double watching = 0, drawing = 0;
   sink.frame = [&](const Frame& f) {
+    const double begun = cpu_seconds();
     std::vector<diagnose::Sighting> seen(f.x.size()), exact(f.x.size());
     for (std::size_t i = 0; i < seen.size(); ++i) {
       exact[i] = {static_cast<int>(i), f.x[i], f.y[i], radius[i], f.spin[i]};
@@ -52,10 +62,20 @@ Seen watch(const Config& truth, const Config& model, double noise, std::uint64_t
           f.spin[i] + (noise > 0 ? kSpinNoiseDeg * kPi / 180 * config.run.frames_per_second * normal(random) : 0)};
     }
     noisy.add(f.time, f.mill_angle, seen);
+    const double before = cpu_seconds();
     clean.add(f.time, f.mill_angle, exact);
+    watching += cpu_seconds() - before;
+    drawing += before - begun;
   };
+  const double start = cpu_seconds();
   sim::simulate(config, sink);
-  Seen s{noisy.laws(), noisy.numbers(), clean.numbers(), {}};
+  const double simulating = cpu_seconds() - start - watching - drawing, before_numbers = cpu_seconds();
+  Seen s;
+  s.without = clean.numbers();
+  s.watching = watching + cpu_seconds() - before_numbers;
+  s.simulating = simulating;
+  s.laws = noisy.laws();
+  s.with_noise = noisy.numbers();
   const diagnose::Watched watched{&noisy.events(), &model};
   s.found = diagnose::found_laws(std::span(&watched, 1));
   s.flights = noisy.events().flights().size();
@@ -84,6 +104,9 @@ void run(const Config& truth, const Config& model, int seeds, double noise) {
   for (const Seen& s : all) flights.add(double(s.flights)), balls.add(double(s.balls)), wall.add(double(s.wall));
   fmt::print("{} runs: {:.0f} flights, {:.0f} impacts of balls, {:.0f} at the wall in each\n", seeds, flights.mean(),
              balls.mean(), wall.mean());
+  double watching = 0, simulating = 0;
+  for (const Seen& s : all) watching += s.watching, simulating += s.simulating;
+  fmt::print("watching takes {:.1f} % of the time of simulating\n", 100 * watching / simulating);
   for (std::size_t l = 0; l < all[0].laws.size(); ++l) {
     Spread z;
     for (const Seen& s : all) z.add(s.laws[l].z);

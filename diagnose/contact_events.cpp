@@ -110,17 +110,17 @@ struct ContactEvents::Piece {
   std::vector<double> spin_i, spin_j, mill_angle;
 };
 
+double mean_radius(std::span<const BallClass> classes) {
+  double radii = 0, shares = 0;
+  for (const BallClass& b : classes) radii += b.share * b.radius, shares += b.share;
+  return radii / shares;
+}
+
 ContactEvents::ContactEvents(const Config& config)
     : shape_(make_mill_shape(config)),
       classes_(config.charge.balls),
-      mill_speed_(rad_s_from_rpm(speed_rpm(config.mill))) {
-  double shares = 0;
-  for (const BallClass& b : classes_) {
-    mean_radius_ += b.share * b.radius;
-    shares += b.share;
-  }
-  mean_radius_ /= shares;
-}
+      mill_speed_(rad_s_from_rpm(speed_rpm(config.mill))),
+      mean_radius_(mean_radius(classes_)) {}
 
 double ContactEvents::mass_of(double radius) const {
   const BallClass* nearest = &classes_.front();
@@ -136,7 +136,7 @@ const ContactEvents::Body* ContactEvents::find(const Moment& moment, int ball) {
 }
 
 bool ContactEvents::near_lifter(const Sighting& ball, double mill_angle, double reach) const {
-  const double place = std::hypot(ball.x, ball.y);
+  const double place = std::sqrt(ball.x * ball.x + ball.y * ball.y);
   if (place + reach <= shape_.tip_radius) return false;
   if (std::isnan(mill_angle) || shape_.sections.empty()) return shape_.tip_radius < shape_.radius;
   const double turn = std::atan2(ball.y, ball.x) - mill_angle;
@@ -146,7 +146,9 @@ bool ContactEvents::near_lifter(const Sighting& ball, double mill_angle, double 
                  number = lifter - shape_.lifter_count * std::floor(lifter / shape_.lifter_count);
     const int section = shape_.section_of[static_cast<std::size_t>(number)];
     if (section < 0) continue;
-    const double away = turn - lifter * shape_.pitch(), u = place * std::cos(away), v = place * std::sin(away);
+    const double away = turn - lifter * shape_.pitch();
+    if (std::abs(away) > 0.5 * shape_.pitch() + 1.2 * reach / place) continue;  // beyond its share of the shell
+    const double u = place * std::cos(away), v = place * std::sin(away);
     const auto& chain = shape_.sections[static_cast<std::size_t>(section)].chain;
     for (std::size_t k = 1; k < chain.size(); ++k) {
       const Eigen::Vector2d along = chain[k] - chain[k - 1], from = Eigen::Vector2d(u, v) - chain[k - 1];
@@ -165,7 +167,7 @@ ContactEvents::Moment ContactEvents::look(double time, double mill_angle, std::s
     if (!(s.radius > 0)) b.seen.radius = mean_radius_;
     widest = std::max(widest, b.seen.radius);
     const double r = b.seen.radius;
-    b.wall_gap = shape_.radius - std::hypot(s.x, s.y) - r;
+    b.wall_gap = shape_.radius - std::sqrt(s.x * s.x + s.y * s.y) - r;
     b.at_plate = b.wall_gap < kWallClearance * r;
     b.at_lifter = near_lifter(b.seen, mill_angle, (1 + kWallClearance) * r);
     b.lonely = !b.at_plate && !b.at_lifter;
@@ -183,7 +185,7 @@ ContactEvents::Moment ContactEvents::look(double time, double mill_angle, std::s
       if (dx > (1 + kFastest) * (a.seen.radius + widest)) break;
       const double touching = a.seen.radius + b.seen.radius, far = (1 + kFastest) * touching;
       if (dx * dx + dy * dy > far * far) continue;
-      const double gap = std::hypot(dx, dy) - touching;
+      const double gap = std::sqrt(dx * dx + dy * dy) - touching;
       m.pairs.push_back({by_x[k], by_x[l], gap});
       a.within_reach = b.within_reach = true;
       if (gap < kWide * touching) a.lonely = b.lonely = false;
@@ -394,8 +396,6 @@ void ContactEvents::measure(int i, int j) {
     return v;
   };
   e.all = view(came);
-  e.nx = e.all.nx;
-  e.ny = e.all.ny;
   for (std::size_t g = 0; g < 2; ++g)
     e.half[g] = view(path_of(before, fall, [&](std::size_t k) { return k % 2 == g; }));
   e.lag_after = went.time - kink.time;

@@ -20,9 +20,9 @@ struct FlightWindow {  // a piece of one flight, by least squares
   double ax = 0, ay = 0;                // [m/s2]
   double information = 0;               // variance of a place over that of an acceleration [1/s4]
   double half = 0;                      // of its duration [s]
-  double spin = kNotGiven;        // mean [rad/s]
-  double spin_slope = kNotGiven;  // [rad/s2]
-  double spin_information = 0;    // variance of a spin over that of its slope [s2]
+  double spin = kNotGiven;              // mean [rad/s]
+  double spin_slope = kNotGiven;        // [rad/s2]
+  double spin_information = 0;          // variance of a spin over that of its slope [s2]
   double scatter = 0;                   // of the places about the parabola [m]
   int freedom = 0;                      // of that
 };
@@ -32,7 +32,6 @@ struct Impact {
   double time = 0;
   bool at_wall = false;
   double radius_i = 0, radius_j = 0, mass_i = 0, mass_j = 0;  // those of j unknown at the wall
-  double nx = 0, ny = 0;
 
   // Velocities along n and t, seen in all frames before and, apart, in every other one: those have errors of their own,
   // so that impacts can be chosen by one and measured by another. At the wall: without the fall in between.
@@ -50,12 +49,15 @@ struct Impact {
   double spin_i = kNotGiven, spin_j = kNotGiven;              // before [rad/s]
   double spin_i_after = kNotGiven, spin_j_after = kNotGiven;  // [rad/s]
   double spin_lag = 0, spin_lag_after = 0;  // from the middle of the frames that these are from to the impact [s]
-  double wall_speed = 0;                                      // of the shell along t [m/s]
-  double scatter = 0;                                         // of the places about the paths [m]
-  int freedom = 0;                                            // of that
+  double wall_speed = 0;                    // of the shell along t [m/s]
+  double scatter = 0;                       // of the places about the paths [m]
+  int freedom = 0;                          // of that
   double miss = 0;   // by how much the paths meet farther out than bodies of these radii touch [m]
   double stray = 0;  // velocity that the pair's middle has gained from elsewhere [m/s]
 };
+
+// Of the balls' classes, by number [m].
+double mean_radius(std::span<const BallClass> classes);
 
 class ContactEvents {
  public:

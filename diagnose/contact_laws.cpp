@@ -56,7 +56,7 @@ const std::array kKinds{
             "share of the spin lost in flight",
             "1/s",
             {0.03, 9},
-            0.002,
+            0.02,
             {"fluid_drag", "slurry_pool"}},
     LawKind{Law::kBallRestitution,
             "restitution, ball on ball",
@@ -64,7 +64,7 @@ const std::array kKinds{
             "m/s",
             "restitution",
             "",
-            {0.08, 0.16, 0.3, 0.5, 9},
+            {0.08, 0.16, 0.26, 9},
             0.003,
             {"impact_restitution", "hertz_contact", "cohesion"}},
     LawKind{Law::kWallRestitution,
@@ -73,7 +73,7 @@ const std::array kKinds{
             "m/s",
             "restitution",
             "",
-            {0.08, 0.16, 0.3, 0.5, 9},
+            {0.16, 0.6, 9},
             0.003,
             {"impact_restitution", "hertz_contact", "cohesion"}},
     LawKind{Law::kBallFriction,
@@ -82,7 +82,7 @@ const std::array kKinds{
             "m/s",
             "friction coefficient",
             "",
-            {0.04, 0.2, 0.4, 9},
+            {0.04, 0.17, 9},
             0.002,
             {"friction_weakening"}},
     LawKind{Law::kWallFriction,
@@ -105,18 +105,23 @@ const std::array kKinds{
             {"rolling_resistance"}},
 };
 
-// Sum over events of what two ways to see the same event add to the residual, squared.
-double scatter_of(const std::vector<LawSample>& samples, const std::vector<std::size_t>& in, double y) {
-  double sum = 0, of_event = 0;
+// Squared error of the ratio y of the sums: of each event what it and all others without it disagree by (the jackknife,
+// which knows that few events with much weight scatter more). `total`: the sum below.
+double variance_of(const std::vector<LawSample>& samples, const std::vector<std::size_t>& in, double y, double total) {
+  double sum = 0, residual = 0, weight = 0;
+  const auto end_event = [&] {
+    const double disagreement = residual / (total - weight);
+    sum += disagreement * disagreement;
+    residual = weight = 0;
+  };
   for (std::size_t k = 0; k < in.size(); ++k) {
     const LawSample& s = samples[in[k]];
-    if (k > 0 && samples[in[k - 1]].event != s.event) {
-      sum += of_event * of_event;
-      of_event = 0;
-    }
-    of_event += s.up - y * s.down;
+    if (k > 0 && samples[in[k - 1]].event != s.event) end_event();
+    residual += s.up - y * s.down;
+    weight += s.down;
   }
-  return sum + of_event * of_event;
+  end_event();
+  return sum;
 }
 
 struct LawBin {
@@ -124,9 +129,10 @@ struct LawBin {
   int count = 0;
 };
 
-constexpr int kLeastEvents = 12;  // in a bin, for its error to be one
+// Events in a bin: for its own error to be one, and for a number whose scatter is known from elsewhere.
+constexpr int kLeastOfLaw = 12, kLeastOfNumber = 4;
 
-std::vector<LawBin> bins_of(const std::vector<LawSample>& samples, const LawKind& kind, double unit) {
+std::vector<LawBin> bins_of(const std::vector<LawSample>& samples, const LawKind& kind, double unit, int least) {
   std::vector<LawBin> bins;
   for (std::size_t b = 0; b + 1 < kind.edges.size(); ++b) {
     std::vector<std::size_t> in;
@@ -142,29 +148,22 @@ std::vector<LawBin> bins_of(const std::vector<LawSample>& samples, const LawKind
       model += s.model;
       bin.count += k == 0 || samples[in[k - 1]].event != s.event;
     }
-    if (bin.count >= kLeastEvents) {
+    if (bin.count >= least) {
       bin.x = x / down;
       bin.y = up / down;
       bin.model = model / down;
-      const double n = bin.count;
-      bin.se = std::sqrt(scatter_of(samples, in, bin.y) * n / (n - 1)) / std::abs(down);
+      bin.se = std::sqrt(variance_of(samples, in, bin.y, down));
     }
     bins.push_back(bin);
   }
   return bins;
 }
 
-double mean_radius(const Config& config) {
-  double radii = 0, shares = 0;
-  for (const BallClass& b : config.charge.balls) radii += b.share * b.radius, shares += b.share;
-  return radii / shares;
-}
-
 // What x is measured in: the speed of a fall through the mill, radii, the spin of a ball that rolls at that speed.
 double unit_of(const LawKind& kind, const Config& config) {
   if (kind.law == Law::kLift) return 1;
   const double speed = std::sqrt(kGravity * config.mill.diameter);
-  return kind.law == Law::kRolling || kind.law == Law::kSpinDecay ? speed / mean_radius(config) : speed;
+  return kind.law == Law::kRolling || kind.law == Law::kSpinDecay ? speed / mean_radius(config.charge.balls) : speed;
 }
 
 // Wilson & Hilferty (1931): the cube root of a chi-square over its freedom is nearly normal.
@@ -262,8 +261,8 @@ std::vector<MeasuredLaw> ContactLaws::laws() const {
   const std::vector<FlightWindow> flights = events_.flights();
   const std::vector<Impact> impacts = events_.impacts();
   for (const LawKind& kind : kKinds) {
-    std::vector<LawBin> bins =
-        bins_of(samples_of(kind.law, flights, impacts, config_, &model_, {}), kind, unit_of(kind, config_));
+    std::vector<LawBin> bins = bins_of(samples_of(kind.law, flights, impacts, config_, &model_, {}), kind,
+                                       unit_of(kind, config_), kLeastOfLaw);
     MeasuredLaw law{.name = kind.name,
                     .x_name = kind.x_name,
                     .x_unit = kind.x_unit,
@@ -295,8 +294,8 @@ LawNumbers ContactLaws::numbers(const Observer& observer) const {
   const std::vector<FlightWindow> flights = events_.flights();
   const std::vector<Impact> impacts = events_.impacts();
   for (const LawKind& kind : kKinds)
-    for (const LawBin& b :
-         bins_of(samples_of(kind.law, flights, impacts, config_, nullptr, observer), kind, unit_of(kind, config_))) {
+    for (const LawBin& b : bins_of(samples_of(kind.law, flights, impacts, config_, nullptr, observer), kind,
+                                   unit_of(kind, config_), kLeastOfNumber)) {
       n.value.push_back(b.y);
       n.se.push_back(b.se);
     }

@@ -38,7 +38,7 @@ struct MeasuredLaw {
 struct LawNumbers {
   std::vector<double> value, se;
 };
-inline constexpr std::size_t kLawNumbers = 23;
+inline constexpr std::size_t kLawNumbers = 19;
 const char* name_of_law_number(std::size_t i);  // "restitution, ball on ball, 2"
 
 class ContactLaws {

@@ -15,9 +15,9 @@
 namespace tumble::diagnose {
 namespace {
 
-constexpr std::size_t kParts = 24;   // that all experiments are cut into, in the order of time
+constexpr std::size_t kParts = 24;  // that all experiments are cut into, in the order of time
 constexpr std::size_t kLeast = 60;  // flights, impacts: fewer tell nothing of a law that nobody knows
-constexpr double kSlowest = 0.16;    // normal speed from which an impact tells of restitution [sqrt(g D)]
+constexpr double kSlowest = 0.16;   // normal speed from which an impact tells of restitution [sqrt(g D)]
 
 struct Term {
   const char *name, *unit;
@@ -55,11 +55,6 @@ std::vector<SparseTerm> search(const Rows& data) {
   return sparse_terms(parts);
 }
 
-double mean_radius(const Config& config) {
-  double sum = 0, shares = 0;
-  for (const BallClass& b : config.charge.balls) sum += b.share * b.radius, shares += b.share;
-  return sum / shares;
-}
 double mean_mass(const Config& config) {
   double sum = 0, shares = 0;
   for (const BallClass& b : config.charge.balls) sum += b.share * b.mass, shares += b.share;
@@ -84,7 +79,7 @@ Rows rows_of_flights(const std::vector<std::unique_ptr<Model>>& models) {
                 {"u / |u|", "m/s2"}, {"z x v", "1/s"}, {"spin z x v", ""}, {"r", "1/s2"},    {"z x r", "1/s2"}};
   bool spins = true;
   for (const auto& m : models) {
-    const double turn = m->laws.mill_speed(), usual = mean_radius(*m->watched.model);
+    const double turn = m->laws.mill_speed(), usual = mean_radius(m->watched.model->charge.balls);
     for (const FlightWindow& w : m->watched.events->flights()) {
       const double small = usual / w.radius;
       spins &= std::isfinite(w.spin);
@@ -151,13 +146,13 @@ std::vector<double> speeds_up_to(double most) {
   return speeds;
 }
 
-// y = (1, v, v^2, size, wall, wall v) `down` from samples of both kinds of impacts.
+// y = (1, v, v^2, size, wall) `down` from samples of both kinds of impacts.
 Rows rows_of_impacts(const std::vector<std::unique_ptr<Model>>& models, bool restitution) {
   Rows data;
   if (restitution)
-    data.terms = {{"1", ""}, {"v_n", "s/m"}, {"v_n^2", "s2/m2"}, {"size", ""}, {"wall", ""}, {"wall v_n", "s/m"}};
+    data.terms = {{"1", ""}, {"v_n", "s/m"}, {"v_n^2", "s2/m2"}, {"size", ""}, {"wall", ""}};
   else
-    data.terms = {{"1", ""}, {"slip", "s/m"}, {"slip^2", "s2/m2"}, {"size", ""}, {"wall", ""}, {"wall slip", "s/m"}};
+    data.terms = {{"1", ""}, {"slip", "s/m"}, {"slip^2", "s2/m2"}, {"size", ""}, {"wall", ""}};
   bool sizes = false, at_wall = false, between = false;
   for (const auto& m : models) {
     const Config& config = *m->watched.model;
@@ -172,7 +167,7 @@ Rows rows_of_impacts(const std::vector<std::unique_ptr<Model>>& models, bool res
     std::stable_sort(samples.begin(), samples.end(),
                      [](const LawSample& a, const LawSample& b) { return a.event < b.event; });
     const double slowest = restitution ? kSlowest * std::sqrt(kGravity * config.mill.diameter) : 0;
-    const double usual = mean_radius(config);
+    const double usual = mean_radius(config.charge.balls);
     for (std::size_t k = 0; k < samples.size(); ++k) {
       LawSample s = samples[k];
       const Impact& e = impacts[static_cast<std::size_t>(s.event)];
@@ -188,17 +183,13 @@ Rows rows_of_impacts(const std::vector<std::unique_ptr<Model>>& models, bool res
       const double size = (e.at_wall ? e.radius_i : 0.5 * (e.radius_i + e.radius_j)) / usual - 1;
       sizes |= std::abs(size) > 1e-6;
       (e.at_wall ? at_wall : between) = true;
-      Rows::Row row{Eigen::VectorXd(7), weight};
-      row.numbers << down, down * s.x, down * s.x * s.x, down * size, down * wall, down * wall * s.x,
-          (s.up - s.model) / weight;
+      Rows::Row row{Eigen::VectorXd(6), weight};
+      row.numbers << down, down * s.x, down * s.x * s.x, down * size, down * wall, (s.up - s.model) / weight;
       data.rows.push_back(std::move(row));
     }
   }
   if (!sizes) data.leave_out("size");
-  if (!at_wall || !between) {
-    data.leave_out("wall");
-    data.leave_out(restitution ? "wall v_n" : "wall slip");
-  }
+  if (!at_wall || !between) data.leave_out("wall");
   return data;
 }
 
@@ -216,7 +207,6 @@ std::vector<std::string> sets_of_impacts(const Rows& data, const std::vector<Spa
         if (name == "v_n" || name == "slip") y += s.coefficient * v;
         if (name == "v_n^2" || name == "slip^2") y += s.coefficient * v * v;
         if (wall && name == "wall") y += s.coefficient;
-        if (wall && (name == "wall v_n" || name == "wall slip")) y += s.coefficient * v;
       }
       values.push_back(restitution ? std::clamp(y, 0.01, 1.0) : std::clamp(y / friction_share(config), 0.0, 10.0));
     }

@@ -126,6 +126,21 @@ TEST(Config, AnEffectOfStrengthZeroCountsAsAbsent) {
   EXPECT_TRUE(has_effect(config, "wall_friction"));
 }
 
+TEST(Config, RefusesTablesThatAreNone) {
+  const auto with = [](std::vector<double> speed, std::vector<double> friction) {
+    Config config = paper_mill();
+    config.effects["tabulated_friction"] = {{"speed", std::move(speed)}, {"friction", std::move(friction)}};
+    return complaint(config);
+  };
+  EXPECT_EQ(with({0, 0.5, 1}, {0.2, 0.1, 0.3}), "");
+  EXPECT_THAT(with({0, 0.5}, {0.2}),
+              HasSubstr("tabulated_friction.friction: has 1 rows and speed 2, must have as many"));
+  EXPECT_THAT(with({}, {0.2}), HasSubstr("must have as many"));
+  EXPECT_THAT(with({0, 1, 0.5}, {0.2, 0.2, 0.2}), HasSubstr("goes from 1 to 0.5, must ascend"));
+  EXPECT_THAT(with({0, 1}, {0.2, -0.1}), HasSubstr("must lie between 0 and 10"));
+  EXPECT_THAT(with(std::vector<double>(33, 1), std::vector<double>(33, 0.2)), HasSubstr("at most 32"));
+}
+
 TEST(Config, RefusesEffectsOutOfRangeWithoutStrengthOrOfLiftersThatTheMillHasNot) {
   const auto with = [](const char* effect, const char* key, double value) {
     Config config = paper_mill();

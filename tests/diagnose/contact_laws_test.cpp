@@ -7,6 +7,7 @@
 #include "core/random.h"
 #include "core/units.h"
 #include "diagnose/found_laws.h"
+#include "diagnose/law_tables.h"
 #include "sim/simulator.h"
 
 namespace tumble::diagnose {
@@ -140,6 +141,13 @@ TEST(ContactLaws, ShowWhatTheModelLacks) {
   // The model that has it all agrees.
   for (const MeasuredLaw& law : watched(with_noise(frames_of(truth)), truth).laws())
     EXPECT_FALSE(law.z > 3.5) << law.name << ": " << law.says;
+
+  const std::vector<std::string> tables = tabulated_sets(laws, model);
+  ASSERT_GE(tables.size(), 4u);
+  EXPECT_EQ(tables[0].substr(0, 37), "effects.tabulated_restitution.speed=[");
+  EXPECT_EQ(tables[1].substr(0, 43), "effects.tabulated_restitution.restitution=[");
+  EXPECT_EQ(tables.back().substr(0, 36), "effects.tabulated_drag.coefficient=[");
+  EXPECT_NEAR(std::stod(tables.back().substr(36)), 6 * kPi * viscosity * 0.011, 0.01);  // the slowest are least sure
 
   const Watched all[] = {{&seen.events(), &model}};
   bool braked = false;

@@ -279,5 +279,13 @@ TEST_F(ConfigFileOnDisk, RefusesWhatIsNoConfig) {
   EXPECT_EQ(message("mill.toml"), "no error");
 }
 
+// Rows belong together: nothing is sorted or thought double.
+TEST(ConfigFile, TablesKeepTheirRows) {
+  const Config c =
+      parse_config("[effects.tabulated_friction]\nspeed = [0, 0.5, 1]\nfriction = [0.2, 0.1, 0.1]\n", "mill.toml");
+  EXPECT_EQ(c.effects.at("tabulated_friction").at("friction"), (std::vector{0.2, 0.1, 0.1}));
+  EXPECT_EQ(parse_config(to_toml(c), "again.toml").effects, c.effects);
+}
+
 }  // namespace
 }  // namespace tumble::io
