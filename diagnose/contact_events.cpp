@@ -161,6 +161,8 @@ bool ContactEvents::near_lifter(const Sighting& ball, double mill_angle, double 
 
 ContactEvents::Moment ContactEvents::look(double time, double mill_angle, std::span<const Sighting> balls) const {
   Moment m{time, mill_angle, {}, {}};
+  m.bodies.reserve(balls.size());
+  m.pairs.reserve(4 * balls.size());
   double widest = 0;
   for (const Sighting& s : balls) {
     Body b{.seen = s};
@@ -173,20 +175,20 @@ ContactEvents::Moment ContactEvents::look(double time, double mill_angle, std::s
     b.lonely = !b.at_plate && !b.at_lifter;
     m.bodies.push_back(b);
   }
-  std::vector<std::size_t> by_x(m.bodies.size());
-  for (std::size_t k = 0; k < by_x.size(); ++k) by_x[k] = k;
-  std::sort(by_x.begin(), by_x.end(),
-            [&](std::size_t a, std::size_t b) { return m.bodies[a].seen.x < m.bodies[b].seen.x; });
+  std::vector<std::pair<double, std::size_t>> by_x;
+  by_x.reserve(m.bodies.size());
+  for (std::size_t k = 0; k < m.bodies.size(); ++k) by_x.emplace_back(m.bodies[k].seen.x, k);
+  std::sort(by_x.begin(), by_x.end());
   for (std::size_t k = 0; k < by_x.size(); ++k) {
-    Body& a = m.bodies[by_x[k]];
-    for (std::size_t l = k + 1; l < by_x.size(); ++l) {
-      Body& b = m.bodies[by_x[l]];
+    Body& a = m.bodies[by_x[k].second];
+    const double farthest = by_x[k].first + (1 + kFastest) * (a.seen.radius + widest);
+    for (std::size_t l = k + 1; l < by_x.size() && by_x[l].first <= farthest; ++l) {
+      Body& b = m.bodies[by_x[l].second];
       const double dx = b.seen.x - a.seen.x, dy = b.seen.y - a.seen.y;
-      if (dx > (1 + kFastest) * (a.seen.radius + widest)) break;
       const double touching = a.seen.radius + b.seen.radius, far = (1 + kFastest) * touching;
       if (dx * dx + dy * dy > far * far) continue;
       const double gap = std::sqrt(dx * dx + dy * dy) - touching;
-      m.pairs.push_back({by_x[k], by_x[l], gap});
+      m.pairs.push_back({by_x[k].second, by_x[l].second, gap});
       a.within_reach = b.within_reach = true;
       if (gap < kWide * touching) a.lonely = b.lonely = false;
       if (gap > kClearance * touching) continue;
