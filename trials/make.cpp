@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <atomic>
 #include <mutex>
 
@@ -44,26 +45,32 @@ bool holds_something(const fs::path& folder) {
 
 // Throws where they are there already.
 std::vector<TrialKey> begin(const MakePlan& plan, const std::function<std::uint64_t()>& entropy) {
+  const std::vector<TrialKey> keys = draw_keys(plan.draw, entropy);
   for (const fs::path& folder : {plan.data, plan.keys}) {
     if (holds_something(folder))
       throw InputError(folder.string(), "is not empty; give another folder, or --resume to go on with its trials");
     io::make_output_folder(folder);
   }
-  std::vector<TrialKey> keys = draw_keys(plan.draw, entropy);
-  for (const TrialKey& key : keys) io::write_text(key_path(plan.keys, key.name), key_text(key));
   io::write_text(plan.keys / kPlanFile, plan_text(plan));
+  for (const TrialKey& key : keys) io::write_text(key_path(plan.keys, key.name), key_text(key));
   io::write_text(plan.data / kSealsFile, seals_text(keys));
   return keys;
 }
 
-// What an earlier call wrote, and nothing else.
+// What an earlier call wrote, by its names, finished or not.
 void remove_trials(const MakePlan& plan) {
-  for (const OpenedKey& opened : open_keys(plan.data, plan.keys)) {
-    for (const char* end : {"", ".part"}) fs::remove_all(plan.data / (opened.key.name + end));
-    fs::remove(key_path(plan.keys, opened.key.name));
+  const auto is_ours = [](const std::string& name) {
+    return name.starts_with(kSealsFile) || name.starts_with(kPlanFile) ||
+           (name.size() > 3 &&
+            std::all_of(name.begin(), name.begin() + 4, [](char c) { return c >= '0' && c <= '9'; }));
+  };
+  for (const fs::path& folder : {plan.data, plan.keys}) {
+    std::error_code error;
+    std::vector<fs::path> ours;
+    for (const auto& entry : fs::directory_iterator(folder, error))
+      if (is_ours(entry.path().filename().string())) ours.push_back(entry.path());
+    for (const fs::path& path : ours) fs::remove_all(path);
   }
-  fs::remove(plan.data / kSealsFile);
-  fs::remove(plan.keys / kPlanFile);
 }
 
 std::vector<TrialKey> go_on(const MakePlan& plan) {
@@ -83,9 +90,10 @@ std::vector<TrialKey> go_on(const MakePlan& plan) {
 
 void make_trials(const MakePlan& plan, const std::function<std::uint64_t()>& entropy, IfThere if_there,
                  const Progress& progress) {
-  if (if_there == IfThere::kReplace && fs::exists(plan.keys / kPlanFile)) remove_trials(plan);
-  const bool there = if_there == IfThere::kResume && holds_something(plan.data);
-  const std::vector<TrialKey> keys = there ? go_on(plan) : begin(plan, entropy);
+  // Keys whose seals were not published yet bind nobody.
+  const bool go = if_there == IfThere::kResume && fs::exists(plan.data / kSealsFile);
+  if (!go && if_there != IfThere::kRefuse && fs::exists(plan.keys / kPlanFile)) remove_trials(plan);
+  const std::vector<TrialKey> keys = go ? go_on(plan) : begin(plan, entropy);
   std::vector<const TrialKey*> left;
   for (const TrialKey& key : keys)
     if (!fs::exists(plan.data / key.name)) left.push_back(&key);

@@ -100,7 +100,7 @@ MakePlan plan_of(const Options& o) {
   LabPlan& lab = plan.lab;
   lab.mill = o.mill.empty() ? io::parse_config(std::string(kUsualMill), "the usual mill", o.sets)
                             : io::read_config(o.mill, o.sets);
-  check_range(o.revolutions, "--revolutions", 0.1, 1000, "revolutions");
+  check_range(o.revolutions, "--revolutions", 0.01, 1000, "revolutions");
   check_range(o.fps, "--fps", 10, 10000, "frames per second");
   check_range(o.place_mm, "--noise-mm", 0, 100, "mm");
   check_range(o.angle_deg, "--angle-noise-deg", 0, 90, "degrees");

@@ -62,7 +62,7 @@ done
 done_by "${seeded[@]}" -o cut --resume
 diff -r whole cut >diff.txt && diff -r whole-keys cut-keys >>diff.txt || fail "resumed trials differ: $(head -3 diff.txt)"
 refused 'is not empty' "${seeded[@]}" -o cut
-refused 'of other trials' "${seeded[@]}" -o cut --resume --revolutions 0.6
+refused 'of other trials' "${seeded[@]}" -o cut --resume --set run.spin_up=0.6
 done_by "${seeded[@]}" -o cut --force
 
 # Other data, one trial each.
