@@ -24,7 +24,8 @@ constexpr double kWeakest = 0.35, kStrongest = 1.1;  // of full strength
 constexpr double kFarthest = 2;                      // standard deviations of what is uncertain
 constexpr std::array kHard{"hertz_contact", "wall_friction", "friction_weakening"};
 constexpr std::array kUnseenInScalars{"camera_scale", "frame_clock"};  // neither changes an angle or a torque
-constexpr std::uint64_t kMostRipples = 12;                             // a revolution
+constexpr double kMostWorn = 2;  // of full strength; a single lifter that is worn by less than full hardly shows
+constexpr std::uint64_t kMostRipples = 12;  // a revolution
 
 // What may hide in a trial of one kind: each recipe draws its strengths and places.
 using Recipe = std::function<std::vector<Hidden>(Random&)>;
@@ -108,8 +109,10 @@ std::vector<Recipe> turn_locked(const DrawPlan& plan) {
     if (lifters > count && !has_effect(plan.mill, "missing_lifters"))
       recipes.push_back([=](Random& random) { return std::vector{missing(count, lifters, random)}; });
   if (const auto wear = suspect("lifter_wear"); wear != suspects.end())
-    recipes.push_back([s = *wear, lifters, &plan](Random& random) {
-      Hidden h = hide(s, plan.mill, random);
+    recipes.push_back([s = *wear, lifters](Random& random) {
+      Hidden h{s.name, Nature::kPhysics, random.uniform(1, kMostWorn), s.parameter, 0, {}};
+      h.value = h.strength * s.full;
+      h.sets = diagnose::sets_at(s, h.strength);
       h.sets.push_back(
           fmt::format("effects.lifter_wear.lifters=[{}]", random.below(static_cast<std::uint64_t>(lifters))));
       return std::vector{h};

@@ -9,7 +9,7 @@
 #include <optional>
 
 #include "analysis/charge_motion.h"
-#include "cli/film_theme.h"
+#include "cli/steps.h"
 #include "core/angle.h"
 #include "core/error.h"
 #include "io/config_file.h"
@@ -28,7 +28,7 @@ constexpr double kMargin = 1.03;
 constexpr double kScalarRate = 50;  // frames per second that toe and shoulder are read off
 
 struct Seeds {
-  std::uint64_t packing, instruments, look;
+  std::uint64_t packing, instruments;
 };
 
 // The torque scale of the mill as handed out: all its balls at the shell, at 3 o'clock [N m].
@@ -105,10 +105,11 @@ class Watch {
     film.format.height = film.style.height = plan_.height;
     film.format.fps_numerator = static_cast<int>(std::lround(plan_.mill.run.frames_per_second * 1000));
     film.format.fps_denominator = 1000;
-    film.style.slow = 1;
+    film.style.colour = render::Colour::kSteel;
+    film.style.overlay = {.toe = false, .shoulder = false, .text = false};  // words would tell the true speed
     cli::CommonOptions quiet;
     quiet.quiet = true;
-    cli::render_filmed_run(io::RunReader(run_path()), film, seeds_.look, folder_ / (stem_ + ".mp4"), quiet);
+    cli::render_run(io::RunReader(run_path()), {}, film, folder_ / (stem_ + ".mp4"), quiet);
     for (const char* end : {".h5", ".xdmf"}) fs::remove(folder_ / (stem_ + end));
   }
 
@@ -205,12 +206,11 @@ void write_trial(const LabPlan& plan, const TrialKey& key, const fs::path& folde
   fs::create_directory(staged);
   const Errors errors = errors_of(key);
   Random random(key.seed);
-  const std::uint64_t look = random.next();  // the same camera and room for all of a trial's films
 
   std::vector<Seen> seen;
   const auto stem = [](std::size_t i) { return fmt::format("experiment_{}", i + 1); };
   for (std::size_t i = 0; i < plan.conditions.size(); ++i) {
-    const Seeds seeds{random.next() >> 1, random.next(), look};
+    const Seeds seeds{random.next() >> 1, random.next()};
     seen.push_back(watch(plan, key, plan.conditions[i], errors, staged, stem(i), seeds,
                          [&](double done) { report(progress, (double(i) + done) / double(plan.conditions.size())); }));
   }

@@ -41,7 +41,7 @@ constexpr std::array kEffects{
     UnknownEffect{"water_jet", "F = push m g to the right where y > 0.1 R", "a feed spray that blows across the mill",
                   "push", "m g", 0.2},
     UnknownEffect{"centre_tube", "smooth round tube of radius a about the axis, as stiff as the shell",
-                  "a scoop or feed tube through the mill", "radius", "R", 0.3},
+                  "a scoop or feed tube through the mill", "radius", "R", 0.4},
     UnknownEffect{"standing_glass", "F = -mu m g v / |v|",
                   "balls that rub on a front glass which does not turn (Coulomb), where end_wall_friction's ends do",
                   "coefficient", "", 0.12},
