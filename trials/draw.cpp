@@ -6,7 +6,6 @@
 #include <cmath>
 #include <utility>
 
-#include "core/effects.h"
 #include "core/error.h"
 #include "core/random.h"
 #include "diagnose/suspects.h"
@@ -24,7 +23,7 @@ constexpr double kWeakest = 0.35, kStrongest = 1.1;  // of full strength
 constexpr double kFarthest = 2;                      // standard deviations of what is uncertain
 constexpr std::array kHard{"hertz_contact", "wall_friction", "friction_weakening"};
 constexpr std::array kUnseenInScalars{"camera_scale", "frame_clock"};  // neither changes an angle or a torque
-constexpr double kMostWorn = 2;  // of full strength; a single lifter that is worn by less than full hardly shows
+constexpr double kLeastWorn = 0.6;          // of full strength: a single lifter that is worn by less hardly shows
 constexpr std::uint64_t kMostRipples = 12;  // a revolution
 
 // What may hide in a trial of one kind: each recipe draws its strengths and places.
@@ -36,17 +35,11 @@ double strength_of(const Suspect& s, Random& random) {
   return std::clamp(down ? -size : size, s.low, s.high);
 }
 
-// Balls are whole: the share by which a count is wrong is not any number.
-double whole_share(double share, int count) {
-  const double wrong = std::copysign(std::max(1.0, std::round(std::abs(share) * count)), share);
-  return wrong / count;
-}
-
-Hidden hide(const Suspect& s, const Config& mill, Random& random) {
+Hidden hide(const Suspect& s, Random& random) {
   Hidden h{s.name, s.kind == SuspectKind::kPhysics ? Nature::kPhysics : Nature::kArtefact, 0, s.parameter, 0, {}};
-  h.strength = strength_of(s, random);
-  if (s.name == "filling_error" && mill.charge.count)
-    h.strength = whole_share(h.strength * s.full, *mill.charge.count) / s.full;
+  const double strength = strength_of(s, random);
+  h.strength = diagnose::strength_of_sets(s, strength);
+  if (h.strength == 0) h.strength = std::copysign(1 / (s.sets[0].full - s.sets[0].none), strength);  // one ball
   h.value = h.strength * s.full;
   if (h.nature == Nature::kPhysics) h.sets = diagnose::sets_at(s, h.strength);
   return h;
@@ -60,11 +53,11 @@ Hidden hide(const UnknownEffect& e, Random& random) {
 std::vector<Recipe> singles(const DrawPlan& plan, const std::function<bool(const Suspect&)>& wanted) {
   std::vector<Recipe> recipes;
   for (const Suspect& s : diagnose::suspects_of(plan.mill)) {
-    if (s.name == "speed_ripple" || !wanted(s)) continue;  // turns with the drum: a kind of its own
+    if (s.turns_with_drum || !wanted(s)) continue;  // a kind of its own
     if (plan.tier == Tier::kScalars &&
         std::find(kUnseenInScalars.begin(), kUnseenInScalars.end(), s.name) != kUnseenInScalars.end())
       continue;
-    recipes.push_back([s, &plan](Random& random) { return std::vector{hide(s, plan.mill, random)}; });
+    recipes.push_back([s](Random& random) { return std::vector{hide(s, random)}; });
   }
   return recipes;
 }
@@ -97,33 +90,33 @@ Hidden missing(int count, int lifters, Random& random) {
           "lifters",         double(count),    {"effects.missing_lifters.lifters=[" + list + "]"}};
 }
 
-// Averages over the turn are blind to these.
+Hidden one_worn(Suspect wear, int lifters, Random& random) {
+  wear.fixed = {fmt::format("effects.lifter_wear.lifters=[{}]", random.below(static_cast<std::uint64_t>(lifters)))};
+  const double strength = random.uniform(kLeastWorn, kStrongest);
+  return {wear.name,      Nature::kPhysics,     strength,
+          wear.parameter, strength * wear.full, diagnose::sets_at(wear, strength)};
+}
+
+Hidden ripple(Suspect drive, Random& random) {
+  drive.fixed = {fmt::format("effects.speed_ripple.order={}", 1 + random.below(kMostRipples)),
+                 fmt::format("effects.speed_ripple.phase_deg={:.1f}", random.uniform(0, 360))};
+  return hide(drive, random);
+}
+
+// Averages over the turn are blind to these: lifters that are gone, one or two, a single worn one, ripple of the speed.
 std::vector<Recipe> turn_locked(const DrawPlan& plan) {
   std::vector<Recipe> recipes;
-  const int lifters = plan.mill.mill.lifters.profile == LifterProfile::kNone ? 0 : plan.mill.mill.lifters.count;
-  const std::vector<Suspect> suspects = diagnose::suspects_of(plan.mill);
-  const auto suspect = [&](const char* name) {
-    return std::find_if(suspects.begin(), suspects.end(), [&](const Suspect& s) { return s.name == name; });
-  };
-  for (const int count : {1, 2})
-    if (lifters > count && !has_effect(plan.mill, "missing_lifters"))
-      recipes.push_back([=](Random& random) { return std::vector{missing(count, lifters, random)}; });
-  if (const auto wear = suspect("lifter_wear"); wear != suspects.end())
-    recipes.push_back([s = *wear, lifters](Random& random) {
-      Hidden h{s.name, Nature::kPhysics, random.uniform(1, kMostWorn), s.parameter, 0, {}};
-      h.value = h.strength * s.full;
-      h.sets = diagnose::sets_at(s, h.strength);
-      h.sets.push_back(
-          fmt::format("effects.lifter_wear.lifters=[{}]", random.below(static_cast<std::uint64_t>(lifters))));
-      return std::vector{h};
-    });
-  if (const auto ripple = suspect("speed_ripple"); ripple != suspects.end())
-    recipes.push_back([s = *ripple, &plan](Random& random) {
-      Hidden h = hide(s, plan.mill, random);
-      h.sets.push_back(fmt::format("effects.speed_ripple.order={}", 1 + random.below(kMostRipples)));
-      h.sets.push_back(fmt::format("effects.speed_ripple.phase_deg={:.1f}", random.uniform(0, 360)));
-      return std::vector{h};
-    });
+  const int lifters = plan.mill.mill.lifters.count;
+  for (const Suspect& s : diagnose::suspects_of(plan.mill)) {
+    if (!s.turns_with_drum) continue;
+    if (s.name == "lifter_wear")
+      recipes.push_back([=](Random& random) { return std::vector{one_worn(s, lifters, random)}; });
+    else if (s.name == "speed_ripple")
+      recipes.push_back([=](Random& random) { return std::vector{ripple(s, random)}; });
+    else
+      for (const int count : {1, 2})
+        recipes.push_back([=](Random& random) { return std::vector{missing(count, lifters, random)}; });
+  }
   return recipes;
 }
 

@@ -3,12 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <atomic>
-#include <mutex>
 
 #include "core/error.h"
-#include "core/parallel_for.h"
 #include "core/version.h"
+#include "diagnose/in_turns.h"
 #include "io/config_file.h"
 #include "io/output.h"
 #include "io/text_file.h"
@@ -98,24 +96,14 @@ void make_trials(const MakePlan& plan, const std::function<std::uint64_t()>& ent
   for (const TrialKey& key : keys)
     if (!fs::exists(plan.data / key.name)) left.push_back(&key);
 
-  std::mutex telling;
-  double done = double(keys.size() - left.size());
-  report(progress, done / double(keys.size()));
-  std::atomic<std::size_t> next = 0;
-  parallel_for(std::min(left.size(), static_cast<std::size_t>(thread_limit())), 1, [&](std::size_t, std::size_t) {
-    for (std::size_t i = next++; i < left.size(); i = next++) {
-      double told = 0;
-      try {
-        write_trial(plan.lab, *left[i], plan.data / left[i]->name, [&](double share) {
-          const std::lock_guard lock(telling);
-          done += share - std::exchange(told, share);
-          report(progress, done / double(keys.size()));
-        });
-      } catch (const Interrupted&) {
-        throw;
-      } catch (const WorkError& e) {  // what failed, not what is in it
-        throw WorkError((plan.data / left[i]->name).string(), e.what());
-      }
+  diagnose::in_turns(left.size(), progress, [&](std::size_t i, const Progress& own) {
+    const fs::path folder = plan.data / left[i]->name;
+    try {
+      write_trial(plan.lab, *left[i], folder, own);
+    } catch (const Interrupted&) {
+      throw;
+    } catch (const WorkError& e) {  // what failed, not what is in it
+      throw WorkError(folder.string(), e.what());
     }
   });
 }
