@@ -16,8 +16,8 @@ struct Condition {
 };
 
 struct ConditionPlan {
-  std::vector<double> speeds{0.5, 0.7, 0.9};  // of critical
-  std::vector<double> hold_out_speeds{0.8}, hold_out_fillings{0.3};
+  std::vector<double> speeds;  // of critical
+  std::vector<double> hold_out_speeds, hold_out_fillings;
 };
 // Throws InputError where two are alike or the mill cannot be so.
 std::vector<Condition> conditions_of(const Config& mill, const ConditionPlan& plan);

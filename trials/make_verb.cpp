@@ -61,7 +61,7 @@ struct Options : cli::CommonOptions {
   std::vector<std::string> sets, kinds, uncertain;
   std::string tier = "tracks", size = "720x720";
   std::size_t n = 0;
-  ConditionPlan conditions;
+  std::vector<std::string> speeds{"0.5", "0.7", "0.9"}, hold_out_speeds{"0.8"}, hold_out_fillings{"0.3"};
   double revolutions = 8, fps = 250, place_mm = 0.3, angle_deg = 0.5;
   double torque_noise = LabPlan().torque_noise, torque_error = LabPlan().torque_error;
   std::optional<std::uint64_t> seed;
@@ -71,6 +71,17 @@ struct Options : cli::CommonOptions {
 void check_range(double value, const char* option, double least, double most, const char* unit) {
   if (!(value >= least && value <= most))
     throw InputError(option, fmt::format("is {:g}; give {:g} to {:g} {}", value, least, most, unit));
+}
+
+std::vector<double> numbers_of(const std::vector<std::string>& list, const char* option) {
+  std::vector<double> numbers;
+  if (list == std::vector<std::string>{"none"}) return numbers;
+  for (const std::string& text : list) {
+    numbers.push_back(io::number_of(text));
+    if (!(numbers.back() > 0))
+      throw InputError(option, "is \"" + text + "\"; give numbers above 0, with commas, or none");
+  }
+  return numbers;
 }
 
 std::vector<UncertainKey> uncertain_of(const Options& o, const Config& mill) {
@@ -109,7 +120,9 @@ MakePlan plan_of(const Options& o) {
   lab.mill.run.revolutions = o.revolutions;
   lab.mill.run.frames_per_second = o.fps;
   check_complete(lab.mill);
-  lab.conditions = conditions_of(lab.mill, o.conditions);
+  lab.conditions =
+      conditions_of(lab.mill, {numbers_of(o.speeds, "--speeds"), numbers_of(o.hold_out_speeds, "--hold-out-speeds"),
+                               numbers_of(o.hold_out_fillings, "--hold-out-fillings")});
   lab.uncertain = uncertain_of(o, lab.mill);
   lab.tracking.place = o.place_mm / 1000;
   lab.tracking.angle = radians(o.angle_deg);
@@ -168,13 +181,13 @@ void add_make(CLI::App& trials) {
   verb->add_option("--keys", o->keys, "Folder for the keys [DIR-keys beside DIR]");
   verb->add_option("--mill", o->mill, "MILL.toml [the one-layer mill of 0.55 m]");
   repeatable(verb->add_option("--set", o->sets, "Override a key of the mill, such as --set run.spin_up=4"));
-  verb->add_option("--speeds", o->conditions.speeds, "Experiments to fit by, fractions of critical")
+  verb->add_option("--speeds", o->speeds, "Experiments to fit by, fractions of critical")
       ->delimiter(',')
       ->capture_default_str();
-  verb->add_option("--hold-out-speeds", o->conditions.hold_out_speeds, "Experiments that are held out")
+  verb->add_option("--hold-out-speeds", o->hold_out_speeds, "Experiments that are held out; or none")
       ->delimiter(',')
       ->capture_default_str();
-  verb->add_option("--hold-out-fillings", o->conditions.hold_out_fillings, "The same, at the mill's own speed")
+  verb->add_option("--hold-out-fillings", o->hold_out_fillings, "The same, at the mill's own speed; or none")
       ->delimiter(',')
       ->capture_default_str();
   repeatable(verb->add_option("--uncertain", o->uncertain,

@@ -92,7 +92,7 @@ TEST(Draw, RefusesWhatThisMillCannotHave) {
 
 TEST(Conditions, TruthHasWhatIsHiddenAndWhatIsHandedOutHasNot) {
   const Config mill = small_mill();
-  const std::vector<Condition> conditions = conditions_of(mill, {});
+  const std::vector<Condition> conditions = conditions_of(mill, {{0.5, 0.7, 0.9}, {0.8}, {0.25}});
   ASSERT_EQ(conditions.size(), 5u);
   EXPECT_TRUE(conditions[3].hold_out && conditions[4].hold_out && !conditions[2].hold_out);
   for (const TrialKey& key : draw(plan_of({Kind::kSingle, Kind::kPair, Kind::kTurnLocked, Kind::kUnknown}, 160)))
