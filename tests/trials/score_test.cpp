@@ -86,6 +86,10 @@ TEST(Score, HardOnesMayNameTheirRivals) {
       {hertz, said("ambiguous", {"wall_friction", "hertz_contact"}, 0.5)},  // decides nothing
       {hertz, said("ambiguous", {"wall_friction", "cohesion"}, 0.5, 1, 1, next)}};
   expect_bar(trials, "3", 0.5, 4);
+  // Five names are no answer, unless the first is right.
+  const Verdict all = said("ambiguous", {"hertz_contact", "a", "b", "c", "d"}, 0.2, 1, 1, next);
+  const Verdict last = said("ambiguous", {"a", "b", "c", "d", "hertz_contact"}, 0.2, 1, 1, next);
+  expect_bar({{hertz, all}, {hertz, last}}, "3", 0.5, 2);
   EXPECT_FALSE(bar(score(trials), "1").tried());
 }
 
@@ -155,11 +159,11 @@ TEST(Score, MeasuresGapsOfRightVerdicts) {
         fmt::format(R"(,"gap":{{"before":{{"hold_out":{}}},"after":{{"hold_out":{}}},"runner_up":{{"hold_out":{}}}}})",
                     before, after, runner_up));
   };
-  const std::vector<Judged> trials{{rolling(), gap(5, 1.4, 3)},            // closed 0.9
-                                   {rolling(), gap(3, 0.9, 0.8)},          // closed 1: no more than chance is left
+  const std::vector<Judged> trials{{rolling(), gap(5, 0.5, 3)},            // closed 1: no more than chance is left
+                                   {rolling(), gap(3, 0.9, 0.8)},          // closed 1
                                    {rolling(), gap(2, 1.5, 4)},            // closed 0.5
                                    {key(Kind::kNone, {}), gap(9, 9, 1)}};  // not right
-  expect_bar(trials, "11", 0.9, 3);
+  expect_bar(trials, "11", 1, 3);
   expect_bar(trials, "12", 2.0 / 3, 3);
 }
 
