@@ -55,6 +55,11 @@ std::vector<TrialKey> begin(const MakePlan& plan, const std::function<std::uint6
   return keys;
 }
 
+// The plan is the first that is written; a call may have been killed even in that.
+bool are_ours(const fs::path& keys) {
+  return fs::exists(keys / kPlanFile) || fs::exists(keys / (std::string(kPlanFile) + ".part"));
+}
+
 // What an earlier call wrote, by its names, finished or not.
 void remove_trials(const MakePlan& plan) {
   const auto is_ours = [](const std::string& name) {
@@ -90,7 +95,7 @@ void make_trials(const MakePlan& plan, const std::function<std::uint64_t()>& ent
                  const Progress& progress) {
   // Keys whose seals were not published yet bind nobody.
   const bool go = if_there == IfThere::kResume && fs::exists(plan.data / kSealsFile);
-  if (!go && if_there != IfThere::kRefuse && fs::exists(plan.keys / kPlanFile)) remove_trials(plan);
+  if (!go && if_there != IfThere::kRefuse && are_ours(plan.keys)) remove_trials(plan);
   const std::vector<TrialKey> keys = go ? go_on(plan) : begin(plan, entropy);
   std::vector<const TrialKey*> left;
   for (const TrialKey& key : keys)

@@ -61,6 +61,11 @@ for wait in 0.2 0.4 0.6; do
 done
 done_by "${seeded[@]}" -o cut --resume
 diff -r whole cut >diff.txt && diff -r whole-keys cut-keys >>diff.txt || fail "resumed trials differ: $(head -3 diff.txt)"
+# Killed before anything was published: while the plan or a key was being written.
+mkdir half half-keys && echo x >half-keys/plan.txt.part
+done_by "${seeded[@]}" -o half --resume
+rm half/seals.txt && mv half-keys/0001.json half-keys/0001.json.part && done_by "${seeded[@]}" -o half --resume
+diff -rq whole half >diff.txt || fail "trials begun afresh differ: $(head -3 diff.txt)"
 refused 'is not empty' "${seeded[@]}" -o cut
 refused 'of other trials' "${seeded[@]}" -o cut --resume --set run.spin_up=0.6
 done_by "${seeded[@]}" -o cut --force
