@@ -72,15 +72,22 @@ bool is_artefact(const std::string& name) {
   });
 }
 
+// A verdict that is missing or broken counts as wrong, in whatever way one can be.
+bool is_broken(const Judged& t) { return t.verdict.verdict.empty(); }
+
 // A plain answer all of whose names are of the wrong nature.
 bool natures_confused(const Judged& t) {
+  if (is_broken(t)) return true;
   if (t.verdict.verdict != "missing_effect" && t.verdict.verdict != "measurement_artefact") return false;
   const bool truth = is_artefact(t.key.hidden[0].name);
   return !t.verdict.effects.empty() && std::all_of(t.verdict.effects.begin(), t.verdict.effects.end(),
                                                    [&](const Named& e) { return is_artefact(e.name) != truth; });
 }
 
-bool names_a_second(const Judged& t) { return !is_ambiguous(t) && named_by(t).size() > 1; }
+bool names_a_second(const Judged& t) { return is_broken(t) || (!is_ambiguous(t) && named_by(t).size() > 1); }
+
+bool says_agreement(const Judged& t) { return t.verdict.verdict == "agreement"; }
+bool says_unknown(const Judged& t) { return t.verdict.verdict == "unknown_effect"; }
 
 bool noticed(const Judged& t) {
   const Names names = named_by(t);
@@ -156,7 +163,7 @@ std::vector<double> gaps_closed(const std::vector<Judged>& trials) {
 }
 
 std::string said(const Judged& t) {
-  if (t.verdict.verdict.empty()) return "no verdict";
+  if (is_broken(t)) return "no verdict";
   const Names names = named_by(t);
   return (is_ambiguous(t) ? "ambiguous: " : "") + fmt::format("{}", fmt::join(names, is_ambiguous(t) ? ", " : " + "));
 }
@@ -204,9 +211,6 @@ Score score(const std::vector<Judged>& trials) {
   const auto seen = [](const Test& of) { return [of](const Judged& t) { return !is_scalar(t) && of(t); }; };
   const auto kind = [](Kind k) { return [k](const Judged& t) { return t.key.kind == k; }; };
   const auto tier = [](Tier k) { return [k](const Judged& t) { return t.key.tier == k && is_even_single(t); }; };
-  const auto says = [](const char* verdict) {
-    return [verdict](const Judged& t) { return t.verdict.verdict == verdict; };
-  };
   const auto of_kind = [&](Kind k) { return seen(kind(k)); };
   const double no = kNotGiven;
   const Strengths s = strengths(trials);
@@ -219,7 +223,7 @@ Score score(const std::vector<Judged>& trials) {
        no},
       {"3", "Hertz, wall friction, mu(v): right, or the rivals and what parts them",
        share(trials, seen(is_hard), rivals_named), 0.80, no},
-      {"4", "nothing hidden: agreement", share(trials, of_kind(Kind::kNone), says("agreement")), 0.97, no},
+      {"4", "nothing hidden: agreement", share(trials, of_kind(Kind::kNone), says_agreement), 0.97, no},
       {"5", "artefact taken for physics, or back",
        share(trials, seen([](const Judged& t) { return is_known(t) && !t.key.hidden.empty(); }), natures_confused), no,
        0.01},
@@ -229,9 +233,10 @@ Score score(const std::vector<Judged>& trials) {
       {"7b", "strengths: scatter in standard errors", spread_of(s.pull), 0.8, 1.3, false},
       {"8a", "strengths: relative error, median", quantile_with_interval(s.error, 0.5), no, 0.05},
       {"8b", "strengths: relative error, 90th percentile", quantile_with_interval(s.error, 0.9), no, 0.20},
-      {"9a", "effects outside the list: unknown_effect", share(trials, of_kind(Kind::kUnknown), says("unknown_effect")),
-       0.90, no},
-      {"9b", "unknown_effect where there is none", share(trials, seen(is_known), says("unknown_effect")), no, 0.03},
+      {"9a", "effects outside the list: unknown_effect", share(trials, of_kind(Kind::kUnknown), says_unknown), 0.90,
+       no},
+      {"9b", "unknown_effect where there is none",
+       share(trials, seen(is_known), [](const Judged& t) { return is_broken(t) || says_unknown(t); }), no, 0.03},
       {"10", "faults that turn with the drum: noticed", share(trials, of_kind(Kind::kTurnLocked), noticed), 0.90, no},
       {"11", "excess gap closed on what was held out, median", quantile_with_interval(gaps_closed(trials), 0.5), 0.90,
        no},

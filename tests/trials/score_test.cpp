@@ -152,6 +152,11 @@ TEST(Score, TurnLockedFaultsAreNoticedByAnyNameButNoneAndArtefacts) {
   expect_bar(trials, "10", 0.4, 5);
 }
 
+TEST(Score, CountsBrokenVerdictsAsWrongInEveryWay) {
+  const std::vector<Judged> trials{{rolling(), parse_verdict("")}, {rolling(), missing("rolling_resistance")}};
+  for (const char* number : {"1", "5", "6b", "9b"}) expect_bar(trials, number, 0.5, 2);
+}
+
 TEST(Score, MeasuresGapsOfRightVerdicts) {
   const auto gap = [](double before, double after, double runner_up) {
     return said(
