@@ -10,9 +10,10 @@
 #include "cli/verbs.h"
 
 // Films and pictures need OpenCV, libav and OSMesa, which bring 250 libraries: to load them takes a quarter of a second
-// and 120 MB, more than a small mill's simulation. So `tumble` is three programs: this one has the verbs without
+// and 120 MB, more than a small mill's simulation. So `tumble` is four programs: this one has the verbs without
 // pictures, `tumble-render` beside it draws films and need not load OpenCV, and `tumble-pictures` has all verbs and
-// takes over for everything else. Rejected: to load the pictures' half with dlopen, which would hold the rooms' state
+// takes over for everything else. `tumble-trials` stands apart: what hides in blind trials is in no other program.
+// Rejected: to load the pictures' half with dlopen, which would hold the rooms' state
 // (locks, threads, signals) twice in one process.
 namespace {
 
@@ -40,6 +41,7 @@ int main(int argc, char** argv) {
   const std::string_view word = argc > 1 ? argv[1] : "";
   for (const Verb& verb : kWithoutPictures)
     if (verb.name == word) return run_program(argc, argv, {&verb.add, 1});
+  if (word == "trials") return hand_over("tumble-trials", argv);
   if (word == "--version" && argc == 2) return run_program(argc, argv, {});
   const bool reads_film =
       std::any_of(argv, argv + argc, [](const char* a) { return std::string_view(a).starts_with("--beside"); });

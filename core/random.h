@@ -1,5 +1,8 @@
 #pragma once
+#include <cmath>
 #include <cstdint>
+
+#include "core/units.h"
 
 namespace tumble {
 
@@ -22,5 +25,10 @@ class Random {
  private:
   std::uint64_t state_;
 };
+
+// Mean 0, variance 1 (Box & Muller 1958).
+inline double gaussian(Random& random) {
+  return std::sqrt(-2 * std::log(1 - random.uniform())) * std::cos(2 * kPi * random.uniform());
+}
 
 }  // namespace tumble

@@ -166,10 +166,6 @@ double cloudy_noise(double x, double y, int period, int octaves, std::uint64_t s
   return sum / weight;
 }
 
-double gaussian(Random& random) {
-  return std::sqrt(-2 * std::log(1 - random.uniform())) * std::cos(2 * kPi * random.uniform());
-}
-
 double log_uniform(Random& random, double low, double high) {
   return low * std::exp(random.uniform() * std::log(high / low));
 }

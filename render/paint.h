@@ -54,7 +54,6 @@ double smooth_noise(double x, double y, int period, std::uint64_t seed);
 double cloudy_noise(double x, double y, int period, int octaves, std::uint64_t seed);
 
 // Random numbers of everyday use.
-double gaussian(Random& random);
 double log_uniform(Random& random, double low, double high);
 bool chance(Random& random, double probability);
 

@@ -72,6 +72,35 @@ struct Stopwatch {
   Clock::time_point start_;
 };
 
+// Adds what acts from outside to the rows of a patch that is about to be kicked. Rounded as contacts are, so that their
+// order goes on to change no bit.
+void push_from_outside(const RunningMill& mill, Share& share, const Patch& patch) {
+  const MillModel& m = mill.model;
+  const Charge& c = mill.charge;
+  BallState ball;
+  ball.time = double(mill.step) * m.time_step;
+  ball.mill_angle = mill_angle(m, mill.step);
+  ball.mill_speed = mill_speed(m, mill.step);
+  for (int k = patch.first; k < patch.last; ++k) {
+    const auto i = static_cast<std::size_t>(k);
+    ball.x = c.x[i];
+    ball.y = c.y[i];
+    ball.vx = c.vx[i] + c.ax[i];
+    ball.vy = c.vy[i] + c.ay[i];
+    ball.spin = c.spin[i] + c.alpha[i];
+    ball.radius = c.radius[i];
+    ball.mass = c.mass[i];
+    const OutsidePush p = mill.outside(ball);
+    const double fx = mill.exact.force(p.fx), fy = mill.exact.force(p.fy), couple = mill.exact.moment(p.couple);
+    double* row = share.forces.data() + kRow * (k & share.mask);
+    row[0] += fx;
+    row[1] += fy;
+    row[2] += couple;
+    (p.reacts_on_mill ? share.kick.ends_torque : share.kick.external) +=
+        mill.exact.torque(ball.x * fy - ball.y * fx + couple);
+  }
+}
+
 // One step of the balls between two searches. A patch is drifted when the first contacts ask for it and kicked when the
 // last ones have been worked out, so that it goes through the cache once. Patches that contacts of several threads
 // reach are drifted before all others and kicked after them, while one thread books what began and ended.
@@ -79,6 +108,7 @@ void step_balls(RunningMill& mill, const ChargeView& balls, const KickTerms& ter
   const double time_step = mill.model.time_step;
   const auto drift = [&](const Patch& p) { mill.kernels->drift(balls, time_step, p.first, p.last); };
   const auto kick = [&](Share& share, const Patch& p) {
+    if (mill.outside) push_from_outside(mill, share, p);
     mill.kernels->kick(balls, terms, mill.exact, {share.forces.data(), share.mask}, p.first, p.last, share.kick);
   };
   const bool alone = mill.shares.size() == 1;

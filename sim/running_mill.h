@@ -10,6 +10,7 @@
 #include "sim/charge.h"
 #include "sim/ledger.h"
 #include "sim/mill_model.h"
+#include "sim/outside_force.h"
 #include "sim/share.h"
 
 namespace tumble::sim {
@@ -32,6 +33,7 @@ struct RunningMill {
   Flights flights;
   Ledger ledger;
   std::int64_t step = 0;  // since the mill began to turn
+  OutsideForce outside;   // empty: none
 
   std::vector<Patch> patches;
   std::vector<Share> shares;  // one for each thread

@@ -249,7 +249,8 @@ RunResult result_of(const Config& config, const RunState& run) {
 
 }  // namespace
 
-RunResult simulate(const Config& config, const RunSink& sink, std::optional<StoredCheckpoint> resume) {
+RunResult simulate(const Config& config, const RunSink& sink, std::optional<StoredCheckpoint> resume,
+                   OutsideForce outside) {
   check_complete(config);
   const MillModel model = make_mill_model(config);
   Balls balls = draw_balls(config);
@@ -270,6 +271,7 @@ RunResult simulate(const Config& config, const RunSink& sink, std::optional<Stor
   } else {
     run.mill = start_mill(model, settle(model, place_loosely(config, model, balls), settled), threads);
   }
+  run.mill.outside = std::move(outside);
   const std::int64_t frames = frame_count(config, model);
   if (sink.setup) sink.setup({config, std::move(balls), model.time_step, model.speed, frames, cause_names(model)});
 

@@ -5,6 +5,7 @@
 #include "core/checkpoint.h"
 #include "core/frame.h"
 #include "core/progress.h"
+#include "sim/outside_force.h"
 
 // Front door of sim: Config -> frames. Knows no file format: frames go to a callback.
 namespace tumble::sim {
@@ -20,7 +21,9 @@ struct RunSink {
 // Runs the mill. Throws InputError for a config that is incomplete or has an unstable time step, WorkError when the
 // run leaves physics (NaN, overlap beyond half a radius), with step, time and ball.
 // `resume`: a checkpoint of the same config; the frames that follow have the same bits as an undisturbed run's.
-RunResult simulate(const Config& config, const RunSink& sink, std::optional<StoredCheckpoint> resume = {});
+// `outside`: acts from the moment the mill begins to turn; empty, it costs nothing and changes no bit.
+RunResult simulate(const Config& config, const RunSink& sink, std::optional<StoredCheckpoint> resume = {},
+                   OutsideForce outside = {});
 
 // Upper bound of Checkpoint::size for this config, for writers that set space aside.
 std::size_t checkpoint_capacity(const Config& config);
