@@ -18,6 +18,8 @@ namespace tumble::io {
 using namespace report;
 namespace {
 
+constexpr std::size_t kMostKeys = 3;  // of effects at the top
+
 // Of the plots' palette: the same on the whole page.
 constexpr int kMeasured = 0, kAfter = 1, kBefore = 4, kHeldOut = 2;
 
@@ -44,16 +46,16 @@ std::string verdict_in_words(Finding finding) {
 }
 
 std::string gap_value(double before, double after) {
-  if (std::isnan(before)) return "–";
-  return std::isnan(after) ? fmt::format("{:.2g}", before) : fmt::format("{:.2g} → {:.2g}", before, after);
+  return gap_in_words(before) + (std::isnan(after) ? "" : " → " + gap_in_words(after));
 }
 
 std::string keys_html(const Diagnosis& d) {
   std::string out = key("Verdict", verdict_in_words(d.finding), "");
-  for (const FoundEffect& e : d.effects) {
+  for (std::size_t i = 0; i < std::min(d.effects.size(), kMostKeys); ++i) {
+    const FoundEffect& e = d.effects[i];
     std::string strength;
     for (const FoundParameter& p : e.parameters) strength += (strength.empty() ? "" : ", ") + parameter_in_words(p);
-    out += key(escaped(words_of_suspect(e.name)), escaped(probability_in_words(e.probability)),
+    out += key(escaped(with_capital(words_of_suspect(e.name))), escaped(probability_in_words(e.probability)),
                "probability" + (strength.empty() ? "" : "; " + escaped(strength)));
   }
   const Gap before = gap_before(d), after = gap_after(d), rival = gap_of_runner_up(d);
@@ -63,7 +65,7 @@ std::string keys_html(const Diagnosis& d) {
   if (!d.runner_up.empty() && std::isfinite(rival.fit))
     out += key("Gap with the runner-up",
                gap_value(rival.fit, kNotGiven) +
-                   (std::isfinite(rival.hold_out) ? fmt::format(", held out {:.2g}", rival.hold_out) : ""),
+                   (std::isfinite(rival.hold_out) ? ", held out " + gap_in_words(rival.hold_out) : ""),
                escaped(words_of_suspect(d.runner_up)));
   return out;
 }
@@ -157,6 +159,8 @@ PageSection law_section(const Diagnosis& d) {
   return section;
 }
 
+bool speaks(const CheckRow& check) { return std::abs(check.z) > 3; }
+
 PageSection check_section(const Diagnosis& d) {
   PageSection section{.heading = "Checks without a simulation"};
   if (d.checks.empty()) return section;
@@ -164,7 +168,10 @@ PageSection check_section(const Diagnosis& d) {
       "What must be so whatever the contacts do: the drum’s circle, free fall, the balance of torque and weight."};
   PageTable table;
   table.header = {"check", "experiment", "unit", "found", "expected", "z", "says"};
-  for (const CheckRow& c : d.checks)
+  std::vector<CheckRow> checks = d.checks;
+  std::stable_sort(checks.begin(), checks.end(),
+                   [](const CheckRow& a, const CheckRow& b) { return speaks(a) && !speaks(b); });
+  for (const CheckRow& c : checks)
     table.rows.push_back(
         {c.name, c.experiment, c.unit, with_error({c.found, c.se}), number(c.expected, c.se), number(c.z, 1), c.says});
   section.tables.push_back(std::move(table));
@@ -225,7 +232,7 @@ void write_diagnosis_page(const std::filesystem::path& path, const Diagnosis& d,
   write_text(path, filled(diagnosis_html, {{"top", std::string(top_html)},
                                            {"head", head_html(title, films.empty() ? "" : "; media-src data:")},
                                            {"title", escaped(title)},
-                                           {"lead", escaped(d.sentence.empty() ? diagnosis_sentence(d) : d.sentence)},
+                                           {"lead", escaped(sentence_below_title(d))},
                                            {"caveats", caveats_html(d.caveats)},
                                            {"keys", keys_html(d)},
                                            {"next_first", asks ? next : ""},

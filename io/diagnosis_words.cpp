@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 
 #include "core/suspect_words.h"
@@ -40,11 +41,11 @@ std::string numbers_of(const FoundEffect& effect) {
   return text;
 }
 
-std::string gap_in_words(const Diagnosis& d) {
+std::string change_of_gap(const Diagnosis& d) {
   const Gap before = gap_before(d), after = gap_after(d);
   if (std::isnan(before.fit) || std::isnan(after.fit)) return "";
   const auto change = [](double from, double to) {
-    return fmt::format("{} from {:.2g} to {:.2g}", to < from ? "falls" : "goes", from, to);
+    return fmt::format("{} from {} to {}", to < from ? "falls" : "goes", gap_in_words(from), gap_in_words(to));
   };
   std::string text = " The gap " + change(before.fit, after.fit);
   if (std::isfinite(before.hold_out) && std::isfinite(after.hold_out))
@@ -70,6 +71,10 @@ std::string probability_in_words(double p) {
   if (p > 0.999) return "above 0.999";
   if (p < 0.001) return "below 0.001";
   return fmt::format("{:.{}f}", p, p > 0.99 || p < 0.01 ? 3 : 2);
+}
+
+std::string gap_in_words(double chi) {
+  return std::isnan(chi) ? "–" : chi < 9.95 ? fmt::format("{:.1f}", chi) : fmt::format("{:.0f}", chi);
 }
 
 std::string parameter_in_words(const FoundParameter& p) {
@@ -105,16 +110,15 @@ std::string diagnosis_sentence(const Diagnosis& d) {
   switch (d.finding) {
     case Finding::kAgreement:
       return "Nothing in these data asks for more than the model has" + with_probability(d, "none") + "." +
-             gap_in_words(d);
+             change_of_gap(d);
     case Finding::kUnknownEffect:
       return "No suspect explains what was measured" + with_probability(d, "unknown") +
-             ". Below is where it shows; nothing was added to the model." + gap_in_words(d);
+             ". Below is where it shows; nothing was added to the model." + change_of_gap(d);
     case Finding::kAmbiguous: {
-      std::string text = "Each of these explains the data about as well: ";
-      for (std::size_t i = 0; i < d.effects.size(); ++i)
-        text += (i > 0 ? "; " : "") + words_of_suspect(d.effects[i].name) + " (" + numbers_of(d.effects[i]) + ")";
-      text += ".";
-      if (!d.next.empty()) text += " To tell them apart: " + d.next.front().measure + ".";
+      std::vector<std::string> probabilities;
+      for (const FoundEffect& e : d.effects) probabilities.push_back(probability_in_words(e.probability));
+      std::string text = diagnosis_title(d) + ": probabilities " + listed(probabilities) + ".";
+      if (!d.next.empty()) text += " What would tell: " + d.next.front().measure + ".";
       return text;
     }
     default:
@@ -124,7 +128,18 @@ std::string diagnosis_sentence(const Diagnosis& d) {
   for (const FoundEffect& e : d.effects)
     text += fmt::format("{}{}: {}.", text.empty() ? "" : " ", statement_of_suspect(e.name, strength_of(e)),
                         words_of_suspect(e.name) + (numbers_of(e).empty() ? "" : ", " + numbers_of(e)));
-  return text + gap_in_words(d);
+  return text + change_of_gap(d);
+}
+
+std::string sentence_below_title(const Diagnosis& d) {
+  const std::string sentence = d.sentence.empty() ? diagnosis_sentence(d) : d.sentence,
+                    title = diagnosis_title(d) + ": ";
+  return sentence.starts_with(title) ? with_capital(sentence.substr(title.size())) : sentence;
+}
+
+std::string with_capital(std::string text) {
+  if (!text.empty()) text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
+  return text;
 }
 
 }  // namespace tumble::io

@@ -39,7 +39,7 @@ bool is_whole(const std::string& key) {
                               std::holds_alternative<int& (*)(Config&)>(known->field));
 }
 
-std::string plus_minus(const Estimate& e) { return e.se > 0 ? fmt::format(", ± {:.2g}", e.se) : ""; }
+std::string plus_minus(const Estimate& e) { return e.se > 0 ? ", ± " + rounded({e.se, e.se}) : ""; }
 
 // --- what was found, as keys
 

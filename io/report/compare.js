@@ -2,7 +2,7 @@
 (() => {
   const data = JSON.parse(document.getElementById("data").textContent);
   tumblePlots.drawAll(data.plots);
-  const { svg, minus, R, point, polyline, squares, scale, follow } = tumbleMaps;
+  const { svg, minus, R, point, polyline, shade, squares, follow } = tumbleMaps;
   const get = id => document.getElementById(id);
   const rounded = (v, se) => v == null ? "–" : minus(v.toFixed(se > 0 ? Math.min(6, Math.max(0, 1 - Math.floor(Math.log10(se)))) : 3));
 
@@ -69,7 +69,11 @@
     dial(map);
     for (const [k, side] of data.sides.entries())
       for (const path of side.paths) map.append(svg("path", { class: `path layer-path ${k ? "found" : "truth"}`, d: polyline(path.points) }));
-    const bar = scale(top, in_errors ? " se" : "");
+    const bar = svg("g", { class: "scale", transform: "translate(118 46)" });
+    [-1, -0.5, 0, 0.5, 1].forEach((v, i) => {
+      bar.append(svg("rect", { x: 0, y: 34 - 10 * i - 10, width: 8, height: 10, ...shade(v) }));
+      if (i % 2 == 0) bar.append(svg("text", { x: 11, y: 34 - 10 * i - 2.5 }, minus(String(Number((v * top).toPrecision(2)))) + (in_errors && v ? " se" : "")));
+    });
     if (name != "occupancy" && fields.velocity_x && fields.velocity_y) velocityArrows(bar);
     map.append(bar, cursor);
     applyLayers();

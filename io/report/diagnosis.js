@@ -2,7 +2,7 @@
 (() => {
   const data = JSON.parse(document.getElementById("data").textContent);
   tumblePlots.drawAll(data.plots);
-  const { svg, minus, R, polyline, shade, squares, scale, follow } = tumbleMaps;
+  const { svg, minus, R, polyline, shade, squares, follow } = tumbleMaps;
   const maps = data.maps.all, get = id => document.getElementById(id);
   if (!maps.length) return;
 
@@ -23,7 +23,9 @@
     place.replaceChildren(svg("circle", { class: "inside", r: R }));
     if (map.n) {
       const { shades, rims } = squares(map.n, k => z[k] == null ? null : z[k] / top(map), k => beyond(map, z, k));
-      place.append(shades, svg("path", { class: "named", d: rims }));
+      const inner = svg("g", { "clip-path": "url(#mill-inside)" });  // squares at the rim reach beyond the shell
+      inner.append(shades, svg("path", { class: "named", d: rims }));
+      place.append(inner);
     } else {
       z.forEach((v, k) => v != null && place.append(svg("path", { class: "pocket " + shade(v / top(map)).class, "fill-opacity": shade(v / top(map))["fill-opacity"], d: sector(k, z.length) })));
       place.append(svg("path", { class: "named", d: z.map((_, k) => beyond(map, z, k) ? sector(k, z.length) : "").join("") }));
@@ -34,7 +36,6 @@
     }
     place.append(shape?.outline ? svg("path", { class: "shell", "fill-rule": "evenodd", d: `M104 0A104 104 0 1 0 -104 0A104 104 0 1 0 104 0z${shape.outline}` })
       : svg("circle", { class: "rim", r: R }));
-    if (large && side == "after") place.append(scale(top(map), ""));
   };
 
   for (const button of document.querySelectorAll(".map-button"))
@@ -67,6 +68,7 @@
     shown = maps[index];
     at = null;
     for (const place of large) draw(place, shown, place.dataset.side, true);
+    get("map-scale").replaceChildren(...[["b", minus(-top(shown))], ["i", ""], ["b", String(top(shown))]].map(([name, text]) => Object.assign(document.createElement(name), { textContent: text })), " standard errors");
     get("map-title").textContent = `${shown.observable}, ${shown.experiment}. ${shown.meaning}`;
     get("map-reading").textContent = "Point at a cell, or come here with the tab key and use the arrow keys.";
     for (const button of document.querySelectorAll(".map-button")) button.setAttribute("aria-pressed", button.dataset.map == index);

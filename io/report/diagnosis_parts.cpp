@@ -18,7 +18,7 @@
 namespace tumble::io::report {
 namespace {
 
-constexpr std::size_t kMostPlaces = 12;  // of numbers beyond chance that are listed
+constexpr std::size_t kMostPlaces = 10;  // that are listed
 constexpr double kWorthABar = 0.005;     // of a suspect's probability
 
 struct ObservableWords {
@@ -47,11 +47,6 @@ const ObservableWords* find(const std::string& name) {
   return nullptr;
 }
 
-std::string capital(std::string text) {
-  if (!text.empty()) text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
-  return text;
-}
-
 double largest(const std::vector<double>& z) {
   double most = kNotGiven;
   for (const double v : z)
@@ -60,7 +55,9 @@ double largest(const std::vector<double>& z) {
 }
 
 std::string one_digit(double v) { return std::isnan(v) ? "–" : fmt::format("{:.1f}", v); }
-std::string arrow(double from, double to) { return one_digit(from) + " → " + one_digit(to); }
+std::string arrow(double from, double to) {
+  return gap_in_words(from) + (std::isnan(to) ? "" : " → " + gap_in_words(to));
+}
 
 template <typename T, typename Get>
 std::vector<std::string> distinct(const std::vector<T>& all, const Get& get) {
@@ -107,7 +104,7 @@ std::string matrix_html(const Diagnosis& d) {
       "<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"All maps\"><table "
       "class=\"matrix\">\n<thead><tr><td></td>";
   for (const std::string& o : observables)
-    out += "<th scope=\"col\">" + escaped(capital(words_of_observable(o))) + "</th>";
+    out += "<th scope=\"col\">" + escaped(with_capital(words_of_observable(o))) + "</th>";
   out += "</tr></thead>\n<tbody>\n";
   for (const std::string& name : experiments) {
     const DiagnosedExperiment* e = experiment_of(d, name);
@@ -147,18 +144,36 @@ std::string table_inside(PageTable table) {
   return text.substr(open.size(), text.size() - open.size() - close.size());
 }
 
+// Of each experiment and observable the number that differs most.
 PageTable places_table(const Diagnosis& d) {
-  std::vector<PlaceOfGap> places = d.where;
-  std::stable_sort(places.begin(), places.end(),
-                   [](const PlaceOfGap& a, const PlaceOfGap& b) { return std::abs(a.z) > std::abs(b.z); });
+  struct Most {
+    const PlaceOfGap* place;
+    int count;
+  };
+  std::vector<Most> all;
+  for (const PlaceOfGap& p : d.where) {
+    const auto of = std::find_if(all.begin(), all.end(), [&](const Most& m) {
+      return m.place->experiment == p.experiment && m.place->observable == p.observable;
+    });
+    if (of == all.end()) {
+      all.push_back({&p, 1});
+      continue;
+    }
+    ++of->count;
+    if (std::abs(p.z) > std::abs(of->place->z)) of->place = &p;
+  }
+  std::stable_sort(all.begin(), all.end(),
+                   [](const Most& a, const Most& b) { return std::abs(a.place->z) > std::abs(b.place->z); });
   PageTable table;
-  table.title = "Numbers that differ beyond chance";
-  table.header = {"experiment", "what", "where", "z before", "z after"};
-  for (std::size_t i = 0; i < std::min(places.size(), kMostPlaces); ++i)
-    table.rows.push_back({places[i].experiment, words_of_observable(places[i].observable), places[i].region,
-                          number(places[i].z, 1), number(places[i].z_after, 1)});
-  if (places.size() > kMostPlaces)
-    table.note = fmt::format("The {} largest of {}; all are in verdict.json. ", kMostPlaces, places.size());
+  table.title = "What differs beyond chance";
+  table.header = {"experiment", "what", "numbers", "most", "z before", "z after"};
+  for (std::size_t i = 0; i < std::min(all.size(), kMostPlaces); ++i) {
+    const PlaceOfGap& p = *all[i].place;
+    table.rows.push_back({p.experiment, words_of_observable(p.observable), fmt::format("{}", all[i].count),
+                          words_for(p.region), number(p.z, 1), number(p.z_after, 1)});
+  }
+  if (all.size() > kMostPlaces)
+    table.note = fmt::format("The {} largest of {} kinds; all numbers are in verdict.json. ", kMostPlaces, all.size());
   table.note += "z: measured less simulated, in standard errors. Within ±2 is chance.";
   return table;
 }
@@ -203,10 +218,19 @@ std::string gap_rows(const Diagnosis& d, const Axis& axis, bool hold_out) {
   return out;
 }
 
+// Round numbers, as close as they can be read.
 std::string ticks(const Axis& axis) {
+  constexpr double kApart = 7;  // [% of the axis]
+  std::vector<double> shown;
+  for (const auto& numbers :
+       {std::vector{1., 10., 100.}, {2., 5., 20., 50., 200., 500.}, {0.5, 3., 30., 300.}, {1.5, 0.7, 7., 15., 70.}})
+    for (const double v : numbers)
+      if (v >= axis.low && v <= axis.high && std::none_of(shown.begin(), shown.end(), [&](double other) {
+            return std::abs(axis.at(v) - axis.at(other)) < kApart;
+          }))
+        shown.push_back(v);
   std::string out;
-  for (const double v : {1., 2., 5., 10., 20., 50., 100., 200., 500.})
-    if (v >= axis.low && v <= axis.high) out += fmt::format("<i style=\"left:{:.2f}%\">{:g}</i>", axis.at(v), v);
+  for (const double v : shown) out += fmt::format("<i style=\"left:{:.2f}%\">{:g}</i>", axis.at(v), v);
   return out;
 }
 
@@ -233,15 +257,15 @@ std::string kind_in_words(NameKind kind) {
 }
 
 std::string bar_row(const RankedName& r, bool is_found) {
-  const std::string chi = std::isnan(r.misfit) ? "–" : fmt::format("{:.2g}", r.misfit);
+  const std::string chi = gap_in_words(r.misfit);
   const bool has_strength = std::isfinite(r.strength.value.value) && !r.strength.name.empty();
   return fmt::format(
       "<tr{}><th scope=\"row\">{}<small>{}</small></th><td class=\"probability\"><span class=\"bar\"><i class=\"{}\" "
       "style=\"width:{:.1f}%\"></i></span>"
       "<b>{}</b></td><td>{}</td><td>{}</td></tr>\n",
-      is_found ? " class=\"is-found\"" : "", escaped(capital(words_of_suspect(r.name))), escaped(kind_in_words(r.kind)),
-      name_of(r.kind), 100 * r.probability, escaped(probability_in_words(r.probability)),
-      has_strength ? escaped(parameter_in_words(r.strength)) : "", chi);
+      is_found ? " class=\"is-found\"" : "", escaped(with_capital(words_of_suspect(r.name))),
+      escaped(kind_in_words(r.kind)), name_of(r.kind), 100 * r.probability,
+      escaped(probability_in_words(r.probability)), has_strength ? escaped(parameter_in_words(r.strength)) : "", chi);
 }
 
 std::string ranking_html(const Diagnosis& d, PageTable& ruled_out) {
@@ -250,12 +274,12 @@ std::string ranking_html(const Diagnosis& d, PageTable& ruled_out) {
   for (const RankedName& r : d.ranking) {
     const bool is_found =
         std::any_of(d.effects.begin(), d.effects.end(), [&](const FoundEffect& e) { return e.name == r.name; });
-    if (is_found || r.probability >= kWorthABar || shown < 3) {
+    if (is_found || r.probability >= kWorthABar || shown < 2) {
       rows += bar_row(r, is_found);
       ++shown;
     } else {
-      ruled_out.rows.push_back({capital(words_of_suspect(r.name)), probability_in_words(r.probability),
-                                std::isnan(r.misfit) ? "–" : fmt::format("{:.2g}", r.misfit),
+      ruled_out.rows.push_back({with_capital(words_of_suspect(r.name)), probability_in_words(r.probability),
+                                gap_in_words(r.misfit),
                                 r.ruled_out_by.empty() ? "others explain the data better" : r.ruled_out_by});
     }
   }
@@ -274,7 +298,7 @@ std::string joined(const std::vector<std::string>& names, const char* between) {
 
 std::string settings_of(const NextExperiment& next) {
   std::string text;
-  for (const auto& [key, value] : next.set) text += fmt::format("{}{} = {:g}", text.empty() ? "" : ", ", key, value);
+  for (const auto& [key, value] : next.set) text += fmt::format("{}{} = {:g}", text.empty() ? "" : ", ", key, value);
   return text.empty() ? "as before" : text;
 }
 
@@ -321,11 +345,12 @@ std::string where_html(const Diagnosis& d) {
   if (!d.maps.empty()) {
     out +=
         R"(<p>Left the model as it was, right with what was found. <b class="more">Orange</b>: more in the mill than in the model;
-<b class="less">blue</b>: less. The paler, the nearer to what chance does; outlined cells are beyond it.</p>
+<b class="less">blue</b>: less. Outlined: beyond what chance does.</p>
 <div class="pair maps">
-<figure><h3>Before</h3><svg class="mill map" data-side="before" viewBox="-116 -112 282 224" tabindex="0" role="application" aria-label="Map before; arrow keys move from cell to cell" aria-describedby="map-reading"></svg></figure>
-<figure><h3>After</h3><svg class="mill map" data-side="after" viewBox="-116 -112 282 224" tabindex="0" role="application" aria-label="Map after; arrow keys move from cell to cell" aria-describedby="map-reading"></svg></figure>
+<figure><h3>Before</h3><svg class="mill map" data-side="before" viewBox="-108 -108 216 216" tabindex="0" role="application" aria-label="Map before; arrow keys move from cell to cell" aria-describedby="map-reading"></svg></figure>
+<figure><h3>After</h3><svg class="mill map" data-side="after" viewBox="-108 -108 216 216" tabindex="0" role="application" aria-label="Map after; arrow keys move from cell to cell" aria-describedby="map-reading"></svg></figure>
 </div>
+<p class="scale-line" id="map-scale"></p>
 <p class="map-title" id="map-title"></p>
 <p class="reading" id="map-reading" aria-live="polite">Point at a cell, or come here with the tab key and use the arrow keys.</p>
 )";
@@ -349,7 +374,7 @@ Json maps_json(const Diagnosis& d) {
   for (const GapMap& m : d.maps) {
     const ObservableWords* words = find(m.observable);
     maps.push_back({{"experiment", m.experiment},
-                    {"observable", capital(words_of_observable(m.observable))},
+                    {"observable", with_capital(words_of_observable(m.observable))},
                     {"meaning", words ? words->meaning : ""},
                     {"unit", m.unit},
                     {"n", m.n},
@@ -393,7 +418,8 @@ std::string proof_html(const Diagnosis& d) {
     table.title = "What got worse";
     table.header = {"experiment", "what", "gap before", "gap after"};
     for (const GapWorse& w : d.worse)
-      table.rows.push_back({w.experiment, words_of_observable(w.observable), one_digit(w.before), one_digit(w.after)});
+      table.rows.push_back(
+          {w.experiment, words_of_observable(w.observable), gap_in_words(w.before), gap_in_words(w.after)});
     out += table_inside(std::move(table));
   } else if (added) {
     out += "<p class=\"note\">Nothing that was measured got worse.</p>\n";
@@ -426,15 +452,15 @@ std::string next_html(const Diagnosis& d) {
   if (d.next.empty()) return "";
   const NextExperiment& best = d.next.front();
   std::string out =
-      "<section>\n<h2>What to measure next</h2>\n<p class=\"next\">" + escaped(capital(best.measure)) + "</p>\n";
+      "<section>\n<h2>What to measure next</h2>\n<p class=\"next\">" + escaped(with_capital(best.measure)) + "</p>\n";
   PageTable table;
-  table.header = {"experiment", "settings", "tells apart", "strength of the evidence", "cost"};
+  table.header = {"experiment", "settings", "tells apart", "evidence", "cost"};
   for (const NextExperiment& n : d.next)
-    table.rows.push_back({capital(n.measure), settings_of(n), joined(n.separates, " – "),
+    table.rows.push_back({with_capital(n.measure), settings_of(n), joined(n.separates, " – "),
                           one_digit(n.expected_log_evidence),
                           std::isnan(n.cost) ? "–" : fmt::format("{:.2g}", n.cost)});
   table.note =
-      "Strength of the evidence: expected logarithm of the odds that it would give; 3 is 20 to 1, 5 is 150 to 1. Cost: "
+      "Evidence: expected logarithm of the odds that it would give; 3 is 20 to 1, 5 is 150 to 1. Cost: "
       "against one more "
       "measurement like those given.";
   return out + table_inside(std::move(table)) + "</section>\n";

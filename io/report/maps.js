@@ -30,16 +30,6 @@ const tumbleMaps = (() => {
     return { shades, rims };
   };
 
-  // The colours' scale from -top to top, beside a map.
-  const scale = (top, unit) => {
-    const bar = svg("g", { class: "scale", transform: "translate(118 46)" });
-    [-1, -0.5, 0, 0.5, 1].forEach((v, i) => {
-      bar.append(svg("rect", { x: 0, y: 34 - 10 * i - 10, width: 8, height: 10, ...shade(v) }));
-      if (i % 2 == 0) bar.append(svg("text", { x: 11, y: 34 - 10 * i - 2.5 }, minus(String(Number((v * top).toPrecision(2)))) + (v ? unit : "")));
-    });
-    return bar;
-  };
-
   // Reads cell k of the map under the pointer or by arrow keys; `grid`: cells along its edge, `at`: the one read last, or
   // null.
   const follow = (map, grid, at, read) => {
@@ -56,5 +46,5 @@ const tumbleMaps = (() => {
       if (Math.hypot((i + 0.5) * 2 / n - 1, (j + 0.5) * 2 / n - 1) < 1) read(j * n + i);
     });
   };
-  return { R, svg, minus, point, polyline, shade, squares, scale, follow };
+  return { R, svg, minus, point, polyline, shade, squares, follow };
 })();

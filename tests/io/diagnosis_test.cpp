@@ -119,7 +119,7 @@ TEST(DiagnosisWords, EverySuspectHasSome) {
 TEST(DiagnosisWords, TheSentenceHasTheNumbers) {
   const std::string text = diagnosis_sentence(with_everything());
   for (const char* part : {"The balls roll less freely", "coefficient 0.0213\u00a0±\u00a00.0031", "probability 0.98",
-                           "falls from 3.5 to 1", "falls from 5 to 1.2"})
+                           "falls from 3.5 to 1.0", "falls from 5.0 to 1.2"})
     EXPECT_THAT(text, HasSubstr(part));
 }
 
