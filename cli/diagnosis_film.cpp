@@ -53,9 +53,7 @@ DiagnosisFilmFile make_diagnosis_film(const fs::path& measured, const ChargeMoti
   style.height = kHeight;
   style.overlay.toe = style.overlay.shoulder = false;
   style.slow = 1 / (kSmallRate * stretch.step);
-  render::Sheet sheet(
-      {{before.setup(), "measured"}, {before.setup(), "model as it was"}, {after.setup(), "with what was found"}},
-      style);
+  render::Sheet sheet({{before.setup(), "Measured"}, {before.setup(), "Before"}, {after.setup(), "After"}}, style);
   const Range scale = scale_of({{&before, nullptr, "", 0}, {&after, nullptr, "", 0}}, style.colour);
   sheet.set_scale(scale.low, scale.high);
 
@@ -96,9 +94,10 @@ DiagnosisFilmFile make_diagnosis_film(const fs::path& measured, const ChargeMoti
   }
 
   const bool by_lifters = runs[0].step.by_lifters && runs[1].step.by_lifters;
-  std::string caption =
-      fmt::format("{}Slowed {:.2g} times. The balls’ colour is their speed; no ball of one is a ball of another.",
-                  by_lifters ? "All begin with the lifters in the same place. " : "", style.slow);
+  std::string caption = fmt::format(
+      "What was measured, the model as it was, and with what was found. {}Slowed {:.2g} times. The balls’ colour is "
+      "their speed; no ball of one is a ball of another.",
+      by_lifters ? "All begin with the lifters in the same place. " : "", style.slow);
   if (clockwise) caption += " The film is mirrored, as all that is measured in it.";
   return {output, caption};
 }

@@ -61,8 +61,9 @@
       where = `${((Math.atan2(y, x) * 180 / Math.PI + 360) % 360).toFixed(0)}°, ${Math.hypot(x, y).toFixed(2)} R`;
     }
     const unit = shown.unit ? " " + shown.unit : "", z = side => shown["z_" + side][k];
-    get("map-reading").textContent = z("before") == null && z("after") == null ? `${where}: not compared`
-      : `${where}: measured ${digits(shown.measured[k])}${unit}; before ${digits(shown.before[k])}, z = ${digits(z("before"))}; after ${digits(shown.after[k])}, z = ${digits(z("after"))}`;
+    const told = side => shown["z_" + side].length ? `; ${side} ${digits(shown[side][k])}, z = ${digits(z(side))}` : "";
+    get("map-reading").textContent = z("before") == null ? `${where}: not compared`
+      : `${where}: measured ${digits(shown.measured[k])}${unit}${told("before")}${told("after")}`;
   };
   const choose = index => {
     shown = maps[index];

@@ -81,6 +81,15 @@ std::string condition_of(const DiagnosedExperiment& e) {
   return text;
 }
 
+bool is_repaired(const Diagnosis& d) {
+  return std::any_of(d.maps.begin(), d.maps.end(), [](const GapMap& m) { return !m.z_after.empty(); });
+}
+
+// Of the maps: where nothing was added there is no after.
+std::vector<std::string> sides_of(const Diagnosis& d) {
+  return is_repaired(d) ? std::vector<std::string>{"before", "after"} : std::vector<std::string>{"before"};
+}
+
 std::string outline_of(const MillShape& shape) {
   std::string path;
   if (!(shape.radius > 0)) return path;
@@ -118,13 +127,14 @@ std::string matrix_html(const Diagnosis& d) {
         continue;
       }
       const double before = largest(map->z_before), after = largest(map->z_after);
+      std::string pictures;
+      for (const std::string& side : sides_of(d))
+        pictures += "<svg class=\"mill\" viewBox=\"-106 -106 212 212\" data-side=\"" + side + "\"></svg>";
       out += fmt::format(
-          "<td><button type=\"button\" class=\"map-button{}\" data-map=\"{}\" aria-label=\"{}, {}: largest z {} "
-          "before, {} after\">"
-          "<svg class=\"mill\" viewBox=\"-106 -106 212 212\" data-side=\"before\"></svg>"
-          "<svg class=\"mill\" viewBox=\"-106 -106 212 212\" data-side=\"after\"></svg><span>{}</span></button></td>",
+          "<td><button type=\"button\" class=\"map-button{}\" data-map=\"{}\" aria-label=\"{}, {}: largest z "
+          "{}\">{}<span>{}</span></button></td>",
           before > map->limit ? " far" : "", map - d.maps.begin(), escaped(name), escaped(words_of_observable(o)),
-          one_digit(before), one_digit(after), arrow(before, after));
+          arrow(before, after), pictures, arrow(before, after));
     }
     out += "</tr>\n";
   }
@@ -344,12 +354,16 @@ std::string where_html(const Diagnosis& d) {
   std::string out = "<section>\n<h2>Where mill and model differ</h2>\n";
   if (!d.maps.empty()) {
     out +=
-        R"(<p>Left the model as it was, right with what was found. <b class="more">Orange</b>: more in the mill than in the model;
-<b class="less">blue</b>: less. Outlined: beyond what chance does.</p>
-<div class="pair maps">
-<figure><h3>Before</h3><svg class="mill map" data-side="before" viewBox="-108 -108 216 216" tabindex="0" role="application" aria-label="Map before; arrow keys move from cell to cell" aria-describedby="map-reading"></svg></figure>
-<figure><h3>After</h3><svg class="mill map" data-side="after" viewBox="-108 -108 216 216" tabindex="0" role="application" aria-label="Map after; arrow keys move from cell to cell" aria-describedby="map-reading"></svg></figure>
-</div>
+        std::string("<p>") + (is_repaired(d) ? "Left the model as it was, right with what was found. " : "") +
+        "<b class=\"more\">Orange</b>: more in the mill than in the model; <b class=\"less\">blue</b>: less. Outlined: "
+        "beyond what chance does.</p>\n<div class=\"pair maps\">\n";
+    for (const std::string& side : sides_of(d))
+      out += fmt::format(
+          "<figure>{}<svg class=\"mill map\" data-side=\"{}\" viewBox=\"-108 -108 216 216\" tabindex=\"0\" "
+          "role=\"application\" aria-label=\"Map {}; arrow keys move from cell to cell\" "
+          "aria-describedby=\"map-reading\"></svg></figure>\n",
+          is_repaired(d) ? "<h3>" + with_capital(side) + "</h3>" : "", side, side);
+    out += R"(</div>
 <p class="scale-line" id="map-scale"></p>
 <p class="map-title" id="map-title"></p>
 <p class="reading" id="map-reading" aria-live="polite">Point at a cell, or come here with the tab key and use the arrow keys.</p>
