@@ -188,7 +188,7 @@ TEST(RepairedMill, SingleLiftersAndRefittedKeysComeWithIt) {
 
 TEST(RepairedMill, AddsNothingWhereNothingWasFound) {
   for (const Finding finding : {Finding::kAgreement, Finding::kUnknownEffect}) {
-    Diagnosis d = missing({}, finding);
+    Diagnosis d = missing({effect("cohesion", NameKind::kPhysics, "force", 0.3, 0.1, 0.4)}, finding);
     d.keys = {{"contact.friction", 0.2, 0.03, {0.23, 0.01}}};
     EXPECT_EQ(repaired_mill(kMill, "mill.toml", d), kMill);
   }
