@@ -13,24 +13,10 @@
 namespace tumble::cli {
 namespace {
 
-constexpr int kEdge = 480;             // [px]
-constexpr double kRate = 30;           // pictures per second
-constexpr double kMostPictures = 240;  // of each film
+constexpr int kEdge = 480;  // [px]
 constexpr double kMostTurns = 3;
-constexpr double kAlike = 0.02;                // of two mills' speeds: they can be kept in step by their angle
-constexpr double kJustShort = 0.05;            // of a lifter's pitch
-constexpr std::uintmax_t kLargest = 6u << 20;  // [bytes] of one film
-constexpr double kQuality[] = {26, 32, 38};    // x264's crf, one after the other until the film is small enough
-
-struct Stretch {
-  double from = 0;     // after the source's first frame [s]
-  double seconds = 0;  // of its own time
-  double step = 0;     // between pictures, likewise
-};
-
-double span_of(const ChargeMotion& m) {
-  return m.profile.size() < 2 ? 0 : m.profile.back().time - m.profile.front().time;
-}
+constexpr double kAlike = 0.02;      // of two mills' speeds: they can be kept in step by their angle
+constexpr double kJustShort = 0.05;  // of a lifter's pitch
 
 // [degrees], after so many seconds; NaN where not known.
 double mill_angle_at(const ChargeMotion& m, double time) {
@@ -57,8 +43,8 @@ void write_run(const Shown& s, const Stretch& stretch, const fs::path& file, dou
   FilmPlan plan;
   plan.style.width = plan.style.height = plan.format.width = plan.format.height = kEdge;
   plan.style.overlay.text = false;
-  plan.style.slow = 1 / (kRate * stretch.step);
-  plan.format.fps_numerator = static_cast<int>(kRate);
+  plan.style.slow = 1 / (kSmallRate * stretch.step);
+  plan.format.fps_numerator = static_cast<int>(kSmallRate);
   plan.format.crf = quality;
   plan.format.threads = options.threads;
   plan.from = stretch.from;
@@ -68,17 +54,10 @@ void write_run(const Shown& s, const Stretch& stretch, const fs::path& file, dou
 
 void write_film(const Shown& s, const Stretch& stretch, const fs::path& file, double quality,
                 const CommonOptions& options) {
-  const auto& rows = s.motion->profile;
-  std::vector<int> frames;
-  std::size_t row = 0;
-  for (double t = stretch.from; t <= stretch.from + stretch.seconds + 1e-9; t += stretch.step) {
-    const auto off = [&](std::size_t i) { return std::abs(rows[i].time - rows.front().time - t); };
-    while (row + 1 < rows.size() && off(row + 1) <= off(row)) ++row;
-    frames.push_back(rows[row].frame);
-  }
+  const std::vector<int> frames = frames_of(*s.motion, stretch);
   io::FilmFormat format;
   format.width = format.height = kEdge;
-  format.fps_numerator = static_cast<int>(kRate);
+  format.fps_numerator = static_cast<int>(kSmallRate);
   format.crf = quality;
   format.threads = options.threads;
   io::FilmWriter writer(file.string(), format);
@@ -93,12 +72,12 @@ void write_film(const Shown& s, const Stretch& stretch, const fs::path& file, do
 }
 
 fs::path write_small(const Shown& s, const Stretch& stretch, const fs::path& file, const CommonOptions& options) {
-  for (const double quality : kQuality) {
+  for (const double quality : kSmallQuality) {
     if (s.run != nullptr)
       write_run(s, stretch, file, quality, options);
     else
       write_film(s, stretch, file, quality, options);
-    if (fs::file_size(file) <= kLargest) return file;
+    if (fs::file_size(file) <= kSmallSize) return file;
   }
   return {};  // pure noise: no film is better than one that no mail takes
 }
@@ -112,6 +91,33 @@ std::string caption_of(const Shown& s) {
 }
 
 }  // namespace
+
+double span_of(const ChargeMotion& m) {
+  return m.profile.size() < 2 ? 0 : m.profile.back().time - m.profile.front().time;
+}
+
+double seconds_shown(const ChargeMotion& m) {
+  const double turn = 360 / std::abs(degrees_per_second(m));
+  return std::isfinite(turn) ? std::min(span_of(m), kMostTurns * turn) : span_of(m);
+}
+
+Stretch stretch_of(double from, double seconds) {
+  constexpr double kMostPictures = 240;
+  const double slow = std::clamp(kMostPictures / kSmallRate / seconds, 1.0, 4.0), step = 1 / (kSmallRate * slow);
+  return {from, std::min(seconds, (kMostPictures - 1) * step), step};
+}
+
+std::vector<int> frames_of(const ChargeMotion& film, const Stretch& stretch) {
+  const auto& rows = film.profile;
+  std::vector<int> frames;
+  std::size_t row = 0;
+  for (double t = stretch.from; t <= stretch.from + stretch.seconds + 1e-9; t += stretch.step) {
+    const auto off = [&](std::size_t i) { return std::abs(rows[i].time - rows.front().time - t); };
+    while (row + 1 < rows.size() && off(row + 1) <= off(row)) ++row;
+    frames.push_back(rows[row].frame);
+  }
+  return frames;
+}
 
 InStep in_step(const ChargeMotion& a, const ChargeMotion& b) {
   InStep step;
@@ -146,9 +152,7 @@ SideBySide small_films(const Shown& a, const Shown& b, const fs::path& folder, c
   double seconds = INFINITY;
   for (const Shown* s : {&a, &b}) {
     if (!s->any()) continue;
-    seconds = std::min(seconds, span_of(*s->motion));
-    const double turn = 360 / std::abs(degrees_per_second(*s->motion));
-    if (std::isfinite(turn)) seconds = std::min(seconds, kMostTurns * turn);
+    seconds = std::min(seconds, seconds_shown(*s->motion));
   }
   if (!std::isfinite(seconds) || !(seconds > 0)) return films;
 
@@ -163,16 +167,16 @@ SideBySide small_films(const Shown& a, const Shown& b, const fs::path& folder, c
                       ? " and keep step by the angle of their mills."
                       : " and keep step by the clock, for the mills turn at different speeds or at ones not known.";
   }
-  films.rate = kRate;
-  films.slow = std::clamp(kMostPictures / kRate / seconds, 1.0, 4.0);
-  const double apart = 1 / (kRate * films.slow);
-  seconds = std::min(seconds, (kMostPictures - 1) * apart);
+  films.rate = kSmallRate;
+  const Stretch stretch = stretch_of(step.a_from, seconds);
+  films.slow = 1 / (kSmallRate * stretch.step);
   if (a.any()) {
-    films.a = write_small(a, {step.a_from, seconds, apart}, folder / "a.mp4", options);
+    films.a = write_small(a, stretch, folder / "a.mp4", options);
     films.a_caption = caption_of(a);
   }
   if (b.any()) {
-    films.b = write_small(b, {step.b_from, seconds * step.pace, apart * step.pace}, folder / "b.mp4", options);
+    films.b =
+        write_small(b, {step.b_from, stretch.seconds * step.pace, stretch.step * step.pace}, folder / "b.mp4", options);
     films.b_caption = caption_of(b);
   }
   if (!films.note.empty()) films.note += " ";

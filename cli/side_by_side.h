@@ -1,7 +1,9 @@
 #pragma once
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "cli/steps.h"
 #include "io/run_file.h"
@@ -20,6 +22,25 @@ struct InStep {
 
 // By the lifters where both are known; by the angle where the mills turn alike but for 2 %, or one has no clock.
 InStep in_step(const ChargeMotion& a, const ChargeMotion& b);
+
+// Small films, for pages: their rate [pictures per second], x264's crf, one after the other until the file is small
+// enough, and how large that is [bytes].
+inline constexpr double kSmallRate = 30;
+inline constexpr double kSmallQuality[] = {26, 32, 38};
+inline constexpr std::uintmax_t kSmallSize = 6u << 20;
+
+struct Stretch {
+  double from = 0;     // after the source's first frame [s]
+  double seconds = 0;  // of its own time
+  double step = 0;     // between pictures, likewise
+};
+
+double span_of(const ChargeMotion& motion);        // from its first frame to its last [s]
+double seconds_shown(const ChargeMotion& motion);  // of that: no more than three turns
+// So many seconds, as slowly as makes them last, and no more pictures than a page bears.
+Stretch stretch_of(double from, double seconds);
+// The film's frames nearest to each moment.
+std::vector<int> frames_of(const ChargeMotion& film, const Stretch& stretch);
 
 // One of two sources, as far as it can be shown as a film: a run, or a film file; neither for anything else.
 struct Shown {

@@ -134,6 +134,15 @@ void check_run(const ConfigChecker& c, const RunPlan& run) {
   c.positive("run.time_step", run.time_step, "s");
 }
 
+void check_measurement(const ConfigChecker& c, const MeasurementErrors& m) {
+  c.range("measurement.camera_scale", m.camera_scale, -0.5, 1, "");
+  c.range("measurement.camera_rotation_deg", m.camera_rotation_deg, -180, 180, "degrees");
+  c.range("measurement.frame_clock", m.frame_clock, -0.5, 1, "");
+  c.range("measurement.torque_offset_N_m", m.torque_offset_N_m, -1e9, 1e9, "N m");
+  c.range("measurement.filling_error", m.filling_error, -0.5, 1, "");
+  c.range("measurement.speed_error", m.speed_error, -0.5, 1, "");
+}
+
 }  // namespace
 
 std::string place_of(const Config& config, const std::string& key) {
@@ -149,6 +158,7 @@ void check(const Config& config) {
   check_charge(c, config);
   check_contact(c, config.contact);
   check_run(c, config.run);
+  check_measurement(c, config.measurement);
 }
 
 void check_complete(const Config& config) {

@@ -80,6 +80,16 @@ struct RunPlan {
   std::uint64_t seed = 1;            // of the packing
 };
 
+// [measurement]: how what was measured on this mill errs, for those who compare with it; a simulation is as without.
+struct MeasurementErrors {
+  double camera_scale = kNotGiven;         // lengths in films and tracks over the true ones, less 1, [-0.5, 1]
+  double camera_rotation_deg = kNotGiven;  // films and tracks are turned by this, counter-clockwise, [-180, 180]
+  double frame_clock = kNotGiven;          // times in films and tracks over the true ones, less 1, [-0.5, 1]
+  double torque_offset_N_m = kNotGiven;    // measured less true, of the whole mill
+  double filling_error = kNotGiven;        // true fillings over those that experiments set, less 1, [-0.5, 1]
+  double speed_error = kNotGiven;          // true speeds over those that experiments set, less 1, [-0.5, 1]
+};
+
 // [effects.NAME]: what was given of each effect; its meaning is core/effects.h's.
 using EffectSettings = std::map<std::string, std::vector<double>>;  // parameter -> value, or the values of a list
 
@@ -89,6 +99,7 @@ struct Config {
   Contact contact;
   std::map<std::string, EffectSettings> effects;
   RunPlan run;
+  MeasurementErrors measurement;
 
   // Where a key was set ("mill.toml:12" or "--set"), for messages; keys that were left at their default are absent.
   std::map<std::string, std::string> origin;

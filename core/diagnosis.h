@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/config.h"
+#include "core/mill_shape.h"
 #include "core/statistics.h"
 
 // What a diagnosis found: verdict.json (contract, section 5) and the report are written from this alone.
@@ -22,6 +23,14 @@ inline const char* name_of(NameKind kind) {
   return names[static_cast<int>(kind)];
 }
 
+struct DiagnosedExperiment {
+  std::string name;
+  std::string data;  // what it brought, in words: "torque, film"
+  bool hold_out = false;
+  double speed_fraction = kNotGiven, filling = kNotGiven;
+  MillShape shape;  // drawn round the maps
+};
+
 struct FoundParameter {
   std::string name, unit;  // as in MILL.toml; of an artefact: "relative", "angle_deg"
   Estimate value;
@@ -32,6 +41,8 @@ struct FoundEffect {  // what was added to the model, or may be what is missing
   NameKind kind = NameKind::kPhysics;
   std::vector<FoundParameter> parameters;
   double probability = kNotGiven;  // that it is in the model
+  // What goes with it at any strength, as --set takes it: "effects.lifter_wear.lifters=[4]".
+  std::vector<std::string> sets = {};
 };
 
 struct RankedName {
@@ -45,15 +56,15 @@ struct RankedName {
 
 struct PlaceOfGap {  // one number of one experiment in which model and measurement differ
   std::string experiment, observable, region;
-  double z = kNotGiven, z_after = kNotGiven;
+  double z = kNotGiven, z_after = kNotGiven;  // measured less simulated, in standard errors
 };
 
 struct GapMap {  // an observable of one experiment over the mill, or over the drum's pockets
-  std::string experiment, observable, unit;
+  std::string experiment = {}, observable = {}, unit = {};
   int n = 0;                // cells along the edge, row by row from the lowest y; 0: pockets round the drum
   double cell = kNotGiven;  // edge [R]
-  std::vector<double> measured, before, after;  // numbers; NaN beyond the shell
-  std::vector<double> z_before, z_after;
+  std::vector<double> measured = {}, before = {}, after = {};  // numbers; NaN beyond the shell
+  std::vector<double> z_before = {}, z_after = {};             // measured less simulated, in standard errors
   double limit = kNotGiven;  // |z| that chance alone exceeds somewhere on the map in one of twenty diagnoses
 };
 
@@ -78,15 +89,16 @@ struct CheckRow {  // an exact check, without simulation
 };
 
 struct LawCurve {  // a law measured contact by contact, over the model's
-  std::string experiment, name, x_name, x_unit, y_name, y_unit;
-  std::vector<double> x, y, se, model;
+  std::string experiment = {}, name = {}, x_name = {}, x_unit = {}, y_name = {}, y_unit = {};
+  std::vector<double> x = {}, y = {}, se = {}, model = {};
   double z = kNotGiven;  // against the model's law
-  std::string says;
+  std::string says = {};
 };
 
 struct TorqueCurve {  // torque over a lifter's passage or over time, measured and simulated with bands
-  std::string experiment, x_name, x_unit;
-  std::vector<double> x, measured, before, before_se, after, after_se;  // [N m] of one slice
+  std::string experiment = {}, x_name = {}, x_unit = {};
+  // [N m] of one slice.
+  std::vector<double> x = {}, measured = {}, before = {}, before_se = {}, after = {}, after_se = {};
 };
 
 struct NextExperiment {
@@ -106,7 +118,8 @@ struct FittedUncertain {  // a key that MILL.toml did not know exactly
 struct Diagnosis {
   std::string mill, measured;  // names of the files
   Finding finding = Finding::kAgreement;
-  std::string sentence;              // the verdict in one or two sentences, for an engineer
+  std::string sentence;  // the verdict in one or two sentences, for an engineer
+  std::vector<DiagnosedExperiment> experiments;
   std::vector<FoundEffect> effects;  // those added; of an ambiguous verdict all that cannot be told apart
   std::vector<RankedName> ranking;   // every suspect, likeliest first
   std::vector<PlaceOfGap> where;     // beyond chance
@@ -122,7 +135,8 @@ struct Diagnosis {
   std::vector<FittedUncertain> keys;
   std::vector<std::vector<std::string>> alike;  // names that these data cannot tell apart, known before they were seen
   std::vector<std::string> caveats;
-  std::string model_toml;            // MILL.toml with what was found added
+  std::string mill_toml;             // the text of MILL.toml
+  std::string model_toml;            // the same with what was found added
   std::string model_tabulated_toml;  // with a law found by regression; empty without
   int simulations = 0;
   double seconds = 0;

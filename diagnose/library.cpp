@@ -135,6 +135,7 @@ Config bare(Config condition) {
   condition.run.seed = 1;
   condition.run.frames_per_second = kRate;
   condition.run.revolutions = kRevolutions;
+  condition.measurement = {};
   condition.origin.clear();
   condition.file.clear();
   return condition;

@@ -1,14 +1,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
-#include <cstring>
-#include <fstream>
-#include <iterator>
 
 #include "core/angle.h"
-#include "core/error.h"
 #include "core/motion_quantities.h"
 #include "io/comparison_file.h"
 #include "io/json_number.h"
@@ -400,14 +395,6 @@ std::string picture(const ComparedSource& side, const ChargeMotion& other, const
   return mill_picture(side.shape, *side.motion, &other, label);
 }
 
-std::string video(const ComparedFilm& film) {
-  errno = 0;
-  std::ifstream in(film.file, std::ios::binary);
-  if (!in) throw WorkError(film.file.string(), std::string("cannot be read for the report: ") + std::strerror(errno));
-  const std::string bytes{std::istreambuf_iterator<char>(in), {}};
-  return R"(<video muted playsinline preload="auto" src="data:video/mp4;base64,)" + base64(bytes) + R"("></video>)";
-}
-
 std::string films_html(const Comparison& c) {
   const bool a = !c.a.film.file.empty(), b = !c.b.film.file.empty();
   if (!a && !b) return "";
@@ -416,7 +403,7 @@ std::string films_html(const Comparison& c) {
   for (const auto& [film, name, style] : {std::tuple{&c.a.film, "A", "truth"}, {&c.b.film, "B", "found"}})
     if (!film->file.empty())
       out += fmt::format("<figure class=\"{}\">{}<figcaption><b>{}.</b> {}</figcaption></figure>\n", style,
-                         video(*film), name, escaped(film->caption));
+                         video_html(film->file, "muted playsinline"), name, escaped(film->caption));
   out +=
       "</div>\n<div class=\"player\"><button id=\"film-play\" type=\"button\">Play</button>"
       "<input id=\"film-time\" type=\"range\" min=\"0\" max=\"1000\" value=\"0\" aria-label=\"Place in the films\">"
@@ -479,6 +466,7 @@ std::string comparison_page(const Comparison& c) {
                                {"data", script_json(data)},
                                {"uplot_js", std::string(uplot_js)},
                                {"plots_js", std::string(plots_js)},
+                               {"maps_js", std::string(maps_js)},
                                {"script", std::string(compare_js)}});
 }
 

@@ -84,6 +84,21 @@ std::vector<Key> make_keys() {
        &reach<&C::run, &RunPlan::frames_per_second>},
       {"run.time_step", "a time in s, > 0, or \"auto\"", "step of the integration", kTimeStep},
       {"run.seed", "a whole number from 0 to 9223372036854775807", "of the packing", &reach<&C::run, &RunPlan::seed>},
+      {"measurement.camera_scale", "a fraction, -0.5 to 1",
+       "lengths in films and tracks are 1 + this times the true ones",
+       &reach<&C::measurement, &MeasurementErrors::camera_scale>},
+      {"measurement.camera_rotation_deg", "an angle in degrees, -180 to 180",
+       "films and tracks are turned by this, counter-clockwise",
+       &reach<&C::measurement, &MeasurementErrors::camera_rotation_deg>},
+      {"measurement.frame_clock", "a fraction, -0.5 to 1", "times in films and tracks are 1 + this times the true ones",
+       &reach<&C::measurement, &MeasurementErrors::frame_clock>},
+      {"measurement.torque_offset_N_m", "a torque in N m", "measured torque less the true one, of the whole mill",
+       &reach<&C::measurement, &MeasurementErrors::torque_offset_N_m>},
+      {"measurement.filling_error", "a fraction, -0.5 to 1",
+       "true fillings are 1 + this times those that experiments set",
+       &reach<&C::measurement, &MeasurementErrors::filling_error>},
+      {"measurement.speed_error", "a fraction, -0.5 to 1", "true speeds are 1 + this times those that experiments set",
+       &reach<&C::measurement, &MeasurementErrors::speed_error>},
   };
 }
 

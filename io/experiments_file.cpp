@@ -262,6 +262,19 @@ class Reader {
   fs::path folder_;
 };
 
+// What an experiment says of its own speed and filling errs as the mill's [measurement] has it.
+Config put_right(Config config, const Experiment& experiment) {
+  const double speed = config.measurement.speed_error, filling = config.measurement.filling_error;
+  for (const auto& [key, value] : experiment.sets) {
+    if (key == "mill.speed" && !std::isnan(speed)) config.mill.speed *= 1 + speed;
+    if (key == "mill.speed_rpm" && !std::isnan(speed)) config.mill.speed_rpm *= 1 + speed;
+    if (key == "charge.filling" && !std::isnan(filling)) config.charge.filling *= 1 + filling;
+    if (key == "charge.count" && !std::isnan(filling))
+      config.charge.count = static_cast<int>(std::lround(*config.charge.count * (1 + filling)));
+  }
+  return config;
+}
+
 }  // namespace
 
 Experiments parse_experiments(const std::string& toml, const std::string& name, const fs::path& folder) {
@@ -328,11 +341,10 @@ Experiments read_measured(const fs::path& path) {
 }
 
 Config config_of(const Config& mill, const Experiment& experiment, const std::vector<std::string>& more) {
-  std::vector<std::string> all;
-  for (const auto& [key, value] : experiment.sets) all.push_back(key + "=" + value);
-  all.insert(all.end(), more.begin(), more.end());
+  std::vector<std::string> sets;
+  for (const auto& [key, value] : experiment.sets) sets.push_back(key + "=" + value);
   try {
-    return with_sets(mill, all);
+    return with_sets(put_right(with_sets(mill, sets), experiment), more);
   } catch (const InputError& e) {
     const std::string said = e.what(), mark = "--set: ";
     if (!said.starts_with(mark)) throw;

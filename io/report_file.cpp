@@ -4,11 +4,8 @@
 
 #include <algorithm>
 #include <cctype>
-#include <cerrno>
 #include <cmath>
 #include <cstring>
-#include <fstream>
-#include <iterator>
 #include <numeric>
 #include <utility>
 
@@ -140,20 +137,13 @@ struct Film {
 };
 Film film_of(const RunReport& r, const fs::path& report_path) {
   if (r.film_file.empty()) return {"<p>No film was rendered.</p>", ""};
-  errno = 0;
-  std::ifstream in(r.film_file, std::ios::binary);
+  constexpr const char* kAttributes = "controls loop muted playsinline";
   std::error_code error;
-  const auto size = fs::file_size(r.film_file, error);
-  if (!in || error)
-    throw WorkError(r.film_file.string(),
-                    std::string("cannot be read for the report: ") + std::strerror(errno ? errno : error.value()));
-  const std::string open = R"(<video controls loop muted playsinline preload="auto" src=")", close = R"("></video>)";
-  if (size > kLargestEmbedded) {
+  if (fs::file_size(r.film_file, error) > kLargestEmbedded && !error) {
     const fs::path folder = report_path.has_parent_path() ? report_path.parent_path() : fs::path(".");
-    return {open + escaped(url_of(fs::proximate(r.film_file, folder, error))) + close, "file: 'self'"};
+    return {video_html_of(url_of(fs::proximate(r.film_file, folder, error)), kAttributes), "file: 'self'"};
   }
-  const std::string bytes{std::istreambuf_iterator<char>(in), {}};
-  return {open + "data:video/mp4;base64," + base64(bytes) + close, ""};
+  return {video_html(r.film_file, kAttributes), ""};
 }
 
 std::string rows_of(const Deviation& deviation) {

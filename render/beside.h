@@ -37,12 +37,6 @@ struct BesideWords {
   std::vector<std::string> notes;
 };
 
-// Where the film's pictures want to be: a square with the mill's axis in its middle.
-struct FilmSquare {
-  int edge_px = 0;
-  double margin = 0;  // half the edge in mill radii
-};
-
 // How the film's own camera sees the mill, in pixels of the square: of places (as reported, `behind` the glass) and of
 // balls that touch the glass. Lengths in metres. For the overlay; the other views show the film straightened.
 struct FilmProjection {

@@ -47,6 +47,12 @@ struct Style {
   ContextKind context = ContextKind::kOsmesa;
 };
 
+// Where the film's pictures want to be: a square with the mill's axis in its middle.
+struct FilmSquare {
+  int edge_px = 0;
+  double margin = 0;  // half the edge in mill radii
+};
+
 // What of the run such a picture asks for beside its frames.
 bool shows_mean(const Overlay& overlay);   // set_mean
 bool shows_forces(const Style& style);     // Moment::contacts

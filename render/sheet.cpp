@@ -148,6 +148,7 @@ Sheet::Sheet(const std::vector<SheetMill>& mills, const Style& style) {
   if (mills.empty() || mills.size() > kMostMills)
     throw InputError("render", fmt::format("{} runs were given; give 1 to {}", mills.size(), kMostMills));
   if (mills.size() > 1) furniture_ = std::make_unique<Furniture>(mills, style);
+  films_.resize(mills.size());
   for (const SheetMill& mill : mills)
     cells_.push_back(std::make_unique<Renderer>(mill.setup, furniture_ ? furniture_->style_of(mill) : style));
 }
@@ -172,6 +173,12 @@ double Sheet::trail_seconds() const {
   return longest;
 }
 
+FilmSquare Sheet::square() const {
+  return {furniture_->cells.edge, 360 / kShellRadiusUnits / furniture_->style.view.zoom};
+}
+
+void Sheet::set_picture(std::size_t mill, Image picture) { films_[mill] = std::move(picture); }
+
 const Image& Sheet::draw(std::span<const Frame> frames, std::span<const Moment> moments, double clock) {
   if (!furniture_) return cells_[0]->draw(frames[0], moments[0]);
   Furniture& my = *furniture_;
@@ -188,10 +195,13 @@ const Image& Sheet::draw(std::span<const Frame> frames, std::span<const Moment> 
   }
   picture_ = my.context.image();
   for (std::size_t i = 0; i < cells_.size(); ++i) {
-    const Image& cell = cells_[i]->draw(frames[i], moments[i]);
-    for (int v = 0; v < cell.height; ++v)
-      std::copy_n(cell.row(v), static_cast<std::size_t>(cell.width) * 4,
-                  picture_.row(my.cells.top(i) + v) + static_cast<std::ptrdiff_t>(my.cells.left(i)) * 4);
+    const Image& cell = films_[i].width > 0 ? films_[i] : cells_[i]->draw(frames[i], moments[i]);
+    for (int v = 0; v < cell.height; ++v) {
+      const std::uint8_t* from = cell.row(v);
+      std::uint8_t* to = picture_.row(my.cells.top(i) + v) + static_cast<std::ptrdiff_t>(my.cells.left(i)) * 4;
+      for (int u = 0; u < cell.width; ++u, from += 4, to += 4)
+        if (from[3] != 0) std::copy_n(from, 4, to);
+    }
   }
   return picture_;
 }

@@ -28,6 +28,11 @@ class Sheet {
   void set_force_scale(double high);                            // as Renderer::set_force_scale, for all
   double trail_seconds() const;                                 // the longest
 
+  // Of several mills: how a film's picture fits into a cell, and that it is shown there instead of the mill's frame
+  // from now on. What is transparent shows the ground.
+  FilmSquare square() const;
+  void set_picture(std::size_t mill, Image picture);
+
   // A frame and its moment for every mill; `clock`: since the film began [s], shown where there are several mills.
   // The picture is valid until the next draw.
   const Image& draw(std::span<const Frame> frames, std::span<const Moment> moments, double clock);
@@ -36,6 +41,7 @@ class Sheet {
  private:
   struct Furniture;  // all but the cells
   std::vector<std::unique_ptr<Renderer>> cells_;
+  std::vector<Image> films_;              // pictures in place of frames; empty ones without
   std::unique_ptr<Furniture> furniture_;  // none for one mill
   Image picture_;
 };

@@ -2,23 +2,14 @@
 (() => {
   const data = JSON.parse(document.getElementById("data").textContent);
   tumblePlots.drawAll(data.plots);
-  const svg = (name, attributes, text) => {
-    const e = document.createElementNS("http://www.w3.org/2000/svg", name);
-    for (const [key, value] of Object.entries(attributes)) e.setAttribute(key, value);
-    if (text != null) e.textContent = text;
-    return e;
-  };
+  const { svg, minus, R, point, polyline, shade, squares, follow } = tumbleMaps;
   const get = id => document.getElementById(id);
-  const minus = text => String(text).replace("-", "−");
   const rounded = (v, se) => v == null ? "–" : minus(v.toFixed(se > 0 ? Math.min(6, Math.max(0, 1 - Math.floor(Math.log10(se)))) : 3));
-  const R = 100;  // picture units of a mill radius
 
   // --- the map of differences
   const map = get("map"), n = data.map.n;
   const fields = data.map.fields, names = Object.keys(fields);
   const words = { occupancy: "occupancy", velocity_x: "velocity to the right, m/s", velocity_y: "velocity upwards, m/s" };
-  const point = (x, y) => `${(x * R).toFixed(2)} ${(-y * R).toFixed(2)}`;
-  const polyline = points => points.length < 2 ? "" : "M" + points.map(p => point(...p)).join("L");
   const ray = (deg, from, to) => {
     const c = Math.cos(deg * Math.PI / 180), s = Math.sin(deg * Math.PI / 180);
     return "M" + point(from * c, from * s) + "L" + point(to * c, to * s);
@@ -70,30 +61,18 @@
     const sizes = shown.filter((v, i) => v != null && f.z[i] != null).map(Math.abs).sort((a, b) => a - b);
     const top = in_errors ? 6 : sizes[Math.floor(sizes.length * 0.99)] || 1;
     map.replaceChildren(svg("circle", { class: "inside", r: R }));
-    const cell = 2 / n, low = svg("g", { class: "layer-shade" });
-    let rims = "";  // of what is beyond chance: where a cell that is meets one that is not
-    const is_named = (i, j) => i >= 0 && j >= 0 && i < n && j < n && f.named[j * n + i] == 1;
-    for (let k = 0; k < n * n; ++k) {
-      if (shown[k] == null || f.z[k] == null) continue;
-      const x = (k % n) * cell - 1, y = Math.floor(k / n) * cell - 1;
-      const at = { x: (x * R).toFixed(2), y: (-(y + cell) * R).toFixed(2), width: (cell * R).toFixed(2), height: (cell * R).toFixed(2) };
-      const much = Math.min(1, Math.abs(shown[k]) / top);
-      if (much > 0.03) low.append(svg("rect", { ...at, class: shown[k] > 0 ? "more" : "less", "fill-opacity": (0.9 * much).toFixed(2) }));
-      const i = k % n, j = Math.floor(k / n);
-      if (!is_named(i, j)) continue;
-      for (const [di, dj, from, to] of [[-1, 0, [0, 0], [0, 1]], [1, 0, [1, 0], [1, 1]], [0, -1, [0, 0], [1, 0]], [0, 1, [0, 1], [1, 1]]])
-        if (!is_named(i + di, j + dj)) rims += polyline([from, to].map(p => [x + p[0] * cell, y + p[1] * cell]));
-    }
-    map.append(low, svg("circle", { class: "rim", r: R }));
+    const { shades, rims } = squares(n, k => shown[k] == null || f.z[k] == null ? null : shown[k] / top, k => f.named[k] == 1);
+    shades.classList.add("layer-shade");
+    map.append(shades, svg("circle", { class: "rim", r: R }));
     if (data.tip < 0.999) map.append(svg("circle", { class: "tips", r: (R * data.tip).toFixed(2) }));
     map.append(svg("path", { class: "named layer-named", d: rims }));
     dial(map);
     for (const [k, side] of data.sides.entries())
       for (const path of side.paths) map.append(svg("path", { class: `path layer-path ${k ? "found" : "truth"}`, d: polyline(path.points) }));
     const bar = svg("g", { class: "scale", transform: "translate(118 46)" });
-    [[-1, "less"], [-0.5, "less"], [0, "less"], [0.5, "more"], [1, "more"]].forEach(([v, of], i) => {
-      bar.append(svg("rect", { x: 0, y: 34 - 10 * i - 10, width: 8, height: 10, class: of, "fill-opacity": (0.9 * Math.abs(v)).toFixed(2) }));
-      if (i % 2 == 0) bar.append(svg("text", { x: 11, y: 34 - 10 * i - 2.5 }, minus(v == 0 ? "0" : String(Number((v * top).toPrecision(2)))) + (in_errors && v ? " se" : "")));
+    [-1, -0.5, 0, 0.5, 1].forEach((v, i) => {
+      bar.append(svg("rect", { x: 0, y: 34 - 10 * i - 10, width: 8, height: 10, ...shade(v) }));
+      if (i % 2 == 0) bar.append(svg("text", { x: 11, y: 34 - 10 * i - 2.5 }, minus(String(Number((v * top).toPrecision(2)))) + (in_errors && v ? " se" : "")));
     });
     if (name != "occupancy" && fields.velocity_x && fields.velocity_y) velocityArrows(bar);
     map.append(bar, cursor);
@@ -114,18 +93,7 @@
   };
   if (names.length) {
     for (const name of names) get("map-of").append(new Option(words[name] ?? name, name));
-    map.addEventListener("pointermove", e => {
-      const p = new DOMPoint(e.clientX, e.clientY).matrixTransform(map.getScreenCTM().inverse());
-      const i = Math.floor((p.x / R + 1) * n / 2), j = Math.floor((1 - p.y / R) * n / 2);
-      if (Math.hypot(p.x, p.y) < R && i >= 0 && j >= 0 && i < n && j < n) read(j * n + i);
-    });
-    map.addEventListener("keydown", e => {
-      const step = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }[e.key];
-      if (!step) return;
-      e.preventDefault();
-      const from = at ?? Math.floor(n / 2) * n + Math.floor(n / 2), i = from % n + step[0], j = Math.floor(from / n) + step[1];
-      if (Math.hypot((i + 0.5) * 2 / n - 1, (j + 0.5) * 2 / n - 1) < 1) read(j * n + i);
-    });
+    follow(map, () => n, () => at, read);
     for (const id of ["map-of", "map-z"]) get(id).addEventListener("change", () => { drawMap(); if (at != null) read(at); });
   } else {
     document.querySelector(".difference").hidden = true;

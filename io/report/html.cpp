@@ -3,10 +3,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
+#include <cstring>
+#include <fstream>
+#include <iterator>
 #include <set>
 #include <stdexcept>
 
+#include "core/error.h"
 #include "io/report/embedded.h"
 
 namespace tumble::io::report {
@@ -97,6 +102,18 @@ std::string base64(std::string_view bytes) {
     for (std::size_t k = 0; k < 4; ++k) out += k <= n ? kDigits[word >> (18 - 6 * k) & 63u] : '=';
   }
   return out;
+}
+
+std::string video_html_of(const std::string& url, const std::string& attributes) {
+  return "<video " + attributes + " preload=\"auto\" src=\"" + escaped(url) + "\"></video>";
+}
+
+std::string video_html(const std::filesystem::path& file, const std::string& attributes) {
+  errno = 0;
+  std::ifstream in(file, std::ios::binary);
+  if (!in) throw WorkError(file.string(), std::string("cannot be read for the report: ") + std::strerror(errno));
+  const std::string bytes{std::istreambuf_iterator<char>(in), {}};
+  return video_html_of("data:video/mp4;base64," + base64(bytes), attributes);
 }
 
 std::string filled(std::string_view page, const std::map<std::string, std::string>& values) {

@@ -1,4 +1,5 @@
 #pragma once
+#include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -26,6 +27,11 @@ std::string caveats_html(const std::vector<std::string>& caveats);
 std::string footer_html(const std::string& version);
 
 std::string base64(std::string_view bytes);
+
+// A film as an element of the page, with these attributes: by its address, or the file's bytes themselves. Throws
+// WorkError where it cannot be read.
+std::string video_html_of(const std::string& url, const std::string& attributes);
+std::string video_html(const std::filesystem::path& file, const std::string& attributes);
 
 // Puts values where the page says {{name}}. What was put in is not looked at again. A {{name}} without a value, or a
 // value without a place, is a mistake of ours: std::logic_error.

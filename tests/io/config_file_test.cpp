@@ -76,6 +76,12 @@ TEST(ConfigFile, ReadsEveryPartOfTheFormat) {
   EXPECT_EQ(place_of(c, "mill.slices"), "mill.toml: mill.slices");
 }
 
+TEST(ConfigFile, TheDocsNameEveryKey) {
+  std::ifstream in(std::filesystem::path(TUMBLE_SOURCE_DIR) / "docs/mill-file.md");
+  const std::string page{std::istreambuf_iterator<char>(in), {}};
+  for (const Key& key : config_keys()) EXPECT_THAT(page, HasSubstr("`" + key.path + "`"));
+}
+
 TEST(ConfigFile, NamesPlaceFindingAndRemedy) {
   const std::vector<std::pair<std::string, std::string>> cases{
       {"[mill]\ndiamter = 1", "mill.toml:2: mill.diamter: unknown key; did you mean mill.diameter?"},
@@ -236,7 +242,8 @@ TEST(ConfigFile, EveryKeyIsReadIntoItsOwnField) {
     if (!std::holds_alternative<double& (*)(Config&)>(key.field)) continue;
     const Config plain = parse_config("", "m");
     const std::string value = key.path.starts_with("contact.friction") || key.path.ends_with("friction") ||
-                                      key.path.ends_with("restitution") || key.path.ends_with("filling")
+                                      key.path.ends_with("restitution") || key.path.ends_with("filling") ||
+                                      key.path.starts_with("measurement")
                                   ? "0.25"
                                   : "3.25";
     Config set;

@@ -149,6 +149,35 @@ TEST(Views, SideBySideACellIsAsItsOwnPicture) {
   EXPECT_EQ(found, 3);
 }
 
+TEST(Views, SideBySideAFilmsPictureHasTheMillsPlaceAndScale) {
+  const std::vector<SheetMill> mills(2, three_mills()[0]);
+  Sheet sheet(mills, plain());
+  std::vector<Frame> frames(2, scene_of(paper_mill(), 1).frame);
+  const std::vector<Moment> moments(2);
+  for (Frame& f : frames) f.x[0] = 10;
+  const Image empty = sheet.draw(frames, moments, 0);
+  frames[1].x[0] = 0.1;
+  frames[1].y[0] = 0.05;
+  const Blob ball = changed(sheet.draw(frames, moments, 0), empty);
+
+  const FilmSquare square = sheet.square();
+  const double pixels_per_metre = square.edge_px / 2.0 / square.margin / (0.545 / 2);
+  Image film(square.edge_px, square.edge_px);  // transparent
+  frames[1].x[0] = 10;
+  sheet.set_picture(1, film);
+  const Image ground = sheet.draw(frames, moments, 0);
+  const int u = static_cast<int>(square.edge_px / 2.0 + 0.1 * pixels_per_metre),
+            v = static_cast<int>(square.edge_px / 2.0 - 0.05 * pixels_per_metre);
+  for (int dv = -2; dv <= 2; ++dv) std::fill_n(film.row(v + dv) + 4 * (u - 2), 4 * 5, std::uint8_t{255});
+  sheet.set_picture(1, film);
+  const Blob dot = changed(sheet.draw(frames, moments, 0), ground);
+  EXPECT_NEAR(dot.u, ball.u, 1);
+  EXPECT_NEAR(dot.v, ball.v, 1);
+  EXPECT_FALSE(std::equal(ground.row(empty.height / 2), ground.row(empty.height / 2) + 4 * empty.width,
+                          empty.row(empty.height / 2)))
+      << "the mill itself is not drawn under its film";
+}
+
 TEST(Views, ASheetHoldsOneToTwelveMills) {
   const std::vector<SheetMill> one(1, three_mills()[0]), thirteen(13, one[0]);
   EXPECT_THROW(Sheet({}, {}), InputError);
