@@ -77,15 +77,15 @@ double error_of_speed(const Turning& d) {
   return mean_of_series(pull).se * double(d.t.size()) / spread;
 }
 
-// Mean square of a wave's two parts where there is none: of the waves beside an order, a few turns' fractions off, in
-// what is left. `used`: of how many.
+// Mean square of a wave's two parts where there is none: of waves beside an order that are no whole number a turn, in
+// what is left. `used`: of how many parts.
 double ground_beside(const Turning& d, int order, int& used) {
-  const int beside = std::min(4, static_cast<int>(d.turns / 2));  // nearer than to the next order
+  constexpr double kBeside = 2.5, kLowest = 0.4;  // [1/rev]
+  const double step = std::max(1 / d.turns, 0.1);
   double sum = 0;
   used = 0;
-  for (int j = -beside; j <= beside; ++j) {
-    if (j == 0) continue;
-    const double k = order + j / d.turns;
+  for (double k = order - kBeside; k <= order + kBeside; k += step) {
+    if (k < kLowest || std::abs(k - std::round(k)) < 0.5 * step) continue;
     double sine = 0, cosine = 0;
     for (std::size_t i = 0; i < d.t.size(); ++i) {
       const double turned = d.start + d.speed * d.t[i];

@@ -66,11 +66,14 @@ bool is_crowded(const std::vector<double>& places, double edge) {
 
 SeenShell seen_shell(const Measurement& m) {
   const double radius = make_mill_shape(m.config).radius;
+  double sum_of_radii = 0, balls = 0;
   std::vector<std::vector<double>> sectors(kSectors);
   for (const SeenFrame* frame : sample_of(m))
     for (const Sighting& s : frame->balls) {
       const double r = true_radius(m.config, s.radius);
       if (std::isnan(r)) continue;
+      sum_of_radii += r;
+      balls += 1;
       const double turn = wrap_360(degrees(std::atan2(s.y, s.x))) / 360;
       sectors[std::min<std::size_t>(kSectors - 1, static_cast<std::size_t>(turn * kSectors))].push_back(
           std::hypot(s.x, s.y) / (radius - r));
@@ -97,8 +100,11 @@ SeenShell seen_shell(const Measurement& m) {
   for (const auto& [direction, edge] : edges)
     chi2 += std::pow(edge.value - direction.dot(circle), 2) / (edge.se * edge.se + kShellError * kShellError);
   const double wider = std::sqrt(std::max(1.0, chi2 / double(edges.size() - 3)));  // Birge 1932
-  const auto part = [&](int i) { return Estimate{radius * circle[i], radius * wider * std::sqrt(covariance(i, i))}; };
-  return {part(1), part(2), part(0)};
+  const auto part = [&](int i, double length) {
+    return Estimate{length * circle[i], length * wider * std::sqrt(covariance(i, i))};
+  };
+  const double path = radius - sum_of_radii / balls;  // of balls that lie against it
+  return {part(1, path), part(2, path), part(0, radius)};
 }
 
 void check_lengths(const Measurement& m, std::vector<ExactCheck>& checks) {

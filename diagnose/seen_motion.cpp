@@ -45,9 +45,17 @@ RunSetup setup_of(std::span<const SeenFrame> frames, const Config& mill) {
 }  // namespace
 
 double turning_speed(std::span<const SeenFrame> frames, const Config& mill) {
-  const double turned = frames.empty() ? kNotGiven : frames.back().mill_angle - frames.front().mill_angle;
-  if (std::isnan(turned) || frames.size() < 2) return rad_s_from_rpm(speed_rpm(mill.mill));
-  return turned / (frames.back().time - frames.front().time);
+  double n = 0, t = 0, a = 0, tt = 0, ta = 0;  // a straight line by least squares
+  for (const SeenFrame& f : frames) {
+    if (std::isnan(f.mill_angle)) continue;
+    const double since = f.time - frames.front().time;
+    n += 1;
+    t += since;
+    a += f.mill_angle;
+    tt += since * since;
+    ta += since * f.mill_angle;
+  }
+  return n < 2 ? rad_s_from_rpm(speed_rpm(mill.mill)) : (n * ta - t * a) / (n * tt - t * t);
 }
 
 ChargeMotion motion_of(std::span<const SeenFrame> frames, const Config& mill) {
