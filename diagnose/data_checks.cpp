@@ -113,9 +113,10 @@ void check_charge(const Measurement& m, const MillShape& shape) {
     if (seen > 0 && drawn > 0 && seen % drawn != 0 && drawn % seen != 0)
       throw InputError(
           m.frames_file,
-          fmt::format("{} lifters go round in the film, MILL.toml has mill.lifters.count = {}; give the film of this "
-                      "mill, or its number of lifters",
-                      seen, drawn));
+          fmt::format(
+              "the film's drum repeats {} times a turn, which MILL.toml's mill.lifters.count = {} does not; give "
+              "the film of this mill, or its number of lifters",
+              seen, drawn));
     if (slice_rule(m.config) == SliceRule::kWeight) return;  // the foremost layer of several
   }
   std::vector<double> counts;

@@ -69,9 +69,10 @@ std::vector<Row> rows_of(const Measurement& m, const std::vector<FlightWindow>& 
     row.basis.col(kUp) << 0, 1;
     row.basis.col(kViscosity) = -row.drag * v;
     row.basis.col(kEnds) = -kGravity * slip.normalized();
-    if (w.y + ball.radius < level) {
-      row.basis.col(kPoolDensity) << 0, 4.0 / 3 * kPi * std::pow(ball.radius, 3) * kGravity / ball.mass;
-      row.basis.col(kPoolViscosity) = -row.drag * v;
+    if (const double h = std::min(level - (w.y - ball.radius), 2 * ball.radius); h > 0) {  // depth that is immersed
+      const double volume = kPi * h * h * (3 * ball.radius - h) / 3, whole = 4.0 / 3 * kPi * std::pow(ball.radius, 3);
+      row.basis.col(kPoolDensity) << 0, volume * kGravity / ball.mass;
+      row.basis.col(kPoolViscosity) = -row.drag * volume / whole * v;
       ++in_pool;
     }
     rows.push_back(row);

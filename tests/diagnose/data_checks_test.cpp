@@ -84,7 +84,7 @@ TEST(DataChecks, RefuseDataOfAnotherExperiment) {
   m = measure(run(), {}, 1);
   m.is_film = true;
   m.motion.lifters_seen = 12;
-  EXPECT_THAT(said_of(m), AllOf(HasSubstr("12 lifters"), HasSubstr("mill.lifters.count = 18")));
+  EXPECT_THAT(said_of(m), AllOf(HasSubstr("12 times a turn"), HasSubstr("mill.lifters.count = 18")));
 }
 
 }  // namespace
