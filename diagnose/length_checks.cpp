@@ -127,9 +127,13 @@ void check_lengths(const Measurement& m, std::vector<ExactCheck>& checks) {
                               std::hypot(shell.radius.se, kShellError * radius), "m", {{"camera_scale", 1 / radius}},
                               {"balls lie against a shell of radius", "lengths are to scale",
                                "lengths are out of scale, or mill.diameter is another mill's"}));
+  const CameraView& camera = m.motion.camera;  // a film's places are about the axis that its camera was found to have
+  const double axis_error = std::hypot(camera.centre_u_px_se, camera.centre_v_px_se) * camera.metres_per_pixel;
+  const double by_camera = m.is_film && !std::isnan(axis_error) ? axis_error : 0.0;
   for (const auto& [name, axis, centre] :
        {std::tuple{"mill_centre_x", "right", shell.centre_x}, std::tuple{"mill_centre_y", "up", shell.centre_y}})
-    checks.push_back(make_check(m, name, centre.value, 0, std::hypot(centre.se, kShellError * radius), "m", {},
+    checks.push_back(make_check(m, name, centre.value, 0, std::hypot(centre.se, kShellError * radius, by_camera), "m",
+                                {},
                                 {fmt::format("the shell that balls lie against has its middle, to the {},", axis),
                                  "positions are about the mill's axis", "positions are not about the mill's axis"}));
 }
