@@ -2,14 +2,9 @@
 #include <vector>
 
 #include "analysis/tracking.h"
-#include "core/statistics.h"
+#include "core/sharp_edge.h"
 
 namespace tumble::analysis {
-
-// Where a crowd of values has its sharp side: members are at the edge or beyond it (`tail` > 0: above, < 0: below) by
-// chance, exponentially; all are blurred alike, on an even ground. Maximum likelihood on a histogram. NaN where fewer
-// than 100 values lie in [from, to] or no crowd stands out.
-Estimate sharp_edge(const std::vector<double>& values, double from, double to, int tail);
 
 // What the balls say of the lengths that a camera gives: they touch at the sum of their radii, and stop at the shell.
 struct BallPlane {
@@ -24,6 +19,9 @@ struct BallPlane {
 // `frames`: places about the axis with the radii as known; `mill_radius`: of the shell; both in one unit. `prior`: of
 // the factor, before the balls are asked.
 BallPlane measure_ball_plane(const std::vector<SeenFrame>& frames, double mill_radius, const Estimate& prior);
+
+// R by the balls' radii over the one that they were measured with.
+Estimate shell_by_balls(const BallPlane& plane);
 
 // The factor alone, of witnesses that are not NaN.
 Estimate lengths_factor(const BallPlane& plane, const Estimate& prior);

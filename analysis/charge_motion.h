@@ -2,6 +2,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -23,12 +24,15 @@ ChargeMotion measure_frames(const RunSetup& setup, const NextFrame& next, const 
 // Of that, toe and shoulder frame by frame, the same numbers for a tenth of the work; heads are not looked for.
 std::vector<ProfileRow> measure_edges(const RunSetup& setup, const NextFrame& next, const Progress& progress = {});
 
-// The whole truth of a simulation that hands its frames out one by one and keeps none.
+// The whole truth of a simulation that hands its frames out one by one and keeps none; or all that balls tell which
+// another program has followed in metres: the same code.
 class FrameMeasurer {
  public:
   explicit FrameMeasurer(const RunSetup& setup);
   ~FrameMeasurer();
   void add(const Frame& frame);
+  // Balls seen at one moment, by id; not all need to be there. Mill angle in radians, NaN where nothing tells it.
+  void add(double time, double mill_angle, std::span<const TrackPoint> balls);
   ChargeMotion finish();  // once
 
  private:

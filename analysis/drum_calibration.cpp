@@ -545,7 +545,7 @@ DrumView calibrate_drum(const NextPicture& next, double frames_per_second, const
   const double tip = known.mill.lifters.height > 0 && mill_radius > 0
                          ? shell.radius * (1 - known.mill.lifters.height / mill_radius)
                          : 0.93 * shell.radius;
-  const int seen_lifters = count_lifters(*reader, tip, 0.99 * shell.radius);
+  const int seen_lifters = view.lifters_seen = count_lifters(*reader, tip, 0.99 * shell.radius);
   view.lifter_count = known.mill.lifters.count > 0 ? known.mill.lifters.count : seen_lifters;
   // Every second lifter alike is seen as half as many.
   if (seen_lifters > 0 && seen_lifters % view.lifter_count != 0 && view.lifter_count % seen_lifters != 0)

@@ -34,7 +34,8 @@ struct DrumView {
   Estimate readout;                          // of a picture, first row to last, in frame periods
   Estimate turn_per_frame;                   // commonest [rad], > 0 counter-clockwise as seen
   std::vector<DrumAngle> angles;             // of the first frames, in order
-  int lifter_count = 0;                      // 0 where no period stands out
+  int lifter_count = 0;                      // as known, else as seen; 0 where no period stands out
+  int lifters_seen = 0;                      // 0 where no period stands out
   double lifter_angle = kNotGiven;           // of one lifter's middle at drum angle 0 [rad]
   std::vector<RingFound> rings;              // innermost first
   cv::Mat hidden;                            // 8 bit, 255 where something that stands still covers the drum

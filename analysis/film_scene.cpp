@@ -156,6 +156,7 @@ void settle_lengths(FilmScene& scene, const FilmPass& pass, const std::vector<do
   scene.place_error = std::hypot(plane.factor.se, depth.place_error);
   if (mill_known && sizes_known) {
     multiply_lengths(scene, plane.factor.value);
+    scene.shell_by_balls = shell_by_balls(plane);
     if (plane.outermost < kReachesShell)
       caveats.push_back(
           fmt::format("no ball is seen near a shell of mill.diameter {:.4g} m: check mill.diameter and charge.balls",

@@ -24,6 +24,7 @@ struct FilmScene {
   double pixels_per_unit = 1;       // in the middle of the glass
   std::vector<double> radii;        // of the size classes, in the camera's unit
   double metres = kNotGiven;        // per unit; NaN where nothing tells
+  Estimate shell_by_balls;          // as in ChargeMotion
   bool from_afar = false;           // drawn without perspective: depth does not show
   bool one_layer = true;            // of balls; else they lie behind one another
   double place_error = 0;           // relative standard error of all places together

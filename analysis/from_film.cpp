@@ -225,6 +225,8 @@ void describe_mill(const FilmScene& scene, const Timeline& line, const Bearings&
   motion.camera.height_px = scene.drum.camera.height;
   motion.mill_radius = scene.radius * scene.metres;
   motion.tip_radius = scene.tip_radius * scene.metres;
+  motion.shell_by_balls = scene.shell_by_balls;
+  motion.lifters_seen = scene.drum.lifters_seen;
   motion.lifter_count = scene.drum.lifter_count > 0 ? scene.drum.lifter_count : known.mill.lifters.count;
   const double revolutions = std::abs(line.turn.value) * (line.clock.source.back() + 1) / (2 * kPi);
   if (revolutions < 1)

@@ -70,14 +70,18 @@ FrameMeasurer::~FrameMeasurer() = default;
 
 void FrameMeasurer::add(const Frame& frame) {
   State& s = *state_;
-  s.statistics.add(s.motion.frames, frame.time, degrees(frame.mill_angle), balls_of(frame, s.setup, s.motion.frames));
+  add(frame.time, frame.mill_angle, balls_of(frame, s.setup, s.motion.frames));
   const Observables& o = frame.observed;
   if (!std::isnan(o.torque)) {
     s.torque.push_back(o.torque);
     s.motion.torque_series.push_back({frame.time, o.torque, o.power});
   }
   if (!std::isnan(o.torque_closure)) s.closure.push_back(o.torque_closure);
-  ++s.motion.frames;
+}
+
+void FrameMeasurer::add(double time, double mill_angle, std::span<const TrackPoint> balls) {
+  State& s = *state_;
+  s.statistics.add(s.motion.frames++, time, degrees(mill_angle), balls);
 }
 
 ChargeMotion FrameMeasurer::finish() {

@@ -1,9 +1,10 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 
-#include "cli/experiment_data.h"
+#include "cli/measurements.h"
 #include "cli/options.h"
 #include "cli/vary.h"
 #include "cli/verbs.h"
@@ -103,6 +104,15 @@ void check_mills(const std::vector<Experiment>& experiments, const Config& mill,
           throw InputError(e.place, "sets " + key + ", which --fit " + fitted.key + " would change; leave one of them");
 }
 
+void check_has_number(const Experiment& e) {
+  if (std::none_of(kScalarData.begin(), kScalarData.end(),
+                   [&](const ScalarDatum& d) { return !std::isnan((e.*d.measured).value); }))
+    throw InputError(
+        e.place,
+        "brings no number to calibrate by; give power_W, torque_N_m, toe_deg, shoulder_deg, torque_series, "
+        "motion, film, or tracks with radii");
+}
+
 // All that the result depends on, in short.
 std::string definition_of(const Config& mill, const diagnose::CalibrationRequest& request) {
   std::string text = fmt::format("{}\n{} {} {} {}\n{}", kVersion, request.simulations, request.repeats,
@@ -134,7 +144,7 @@ void calibrate(Options o) {
   if (!(o.model_error >= 0 && o.model_error < 1))
     throw InputError("--model-error", "must be a share of power and torque, 0 to below 1");
   const Config mill = io::read_config(o.config, o.sets);
-  Experiments measured = io::read_measured(o.measured);
+  const Experiments measured = io::read_measured(o.measured);
   diagnose::CalibrationRequest request;
   request.keys = keys_of(o);
   request.repeats = o.repeats;
@@ -148,11 +158,12 @@ void calibrate(Options o) {
   std::error_code error;
   if (!o.resume && fs::is_directory(o.output, error))  // shows before films are measured, which takes long
     for (const fs::path& file : {model, json, page, table}) io::check_output_file(file, o.force);
-  for (Experiment& e : measured.list) fill_from_files(e, io::config_of(mill, e), o, notes);
-  request.experiments = measured.list;
   std::size_t fitted = 0;
-  for (const Experiment& e : measured.list) fitted += !e.hold_out;
-  if (fitted == 0) throw InputError(o.measured.string(), "holds out every experiment; leave some to fit");
+  for (const diagnose::Measurement& m : read_measurements(measured, mill, o.output / "films", o, notes)) {
+    request.experiments.push_back(m.experiment);
+    check_has_number(m.experiment);
+    fitted += !m.experiment.hold_out;
+  }
   const std::size_t least = diagnose::least_simulations(request.keys.size(), fitted);
   request.simulations = o.simulations ? o.simulations : diagnose::default_simulations(request.keys.size(), fitted);
   if (request.simulations < least)

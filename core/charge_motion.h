@@ -108,6 +108,8 @@ struct ChargeMotion {
   std::string origin;  // the file's name
   Rotation rotation = Rotation::kUnknown;
   int lifter_count = 0;            // 0 where unknown or none
+  int lifters_seen = 0;            // films: how many go round in the pictures, whatever is known; 0 where none show
+  Estimate shell_by_balls;         // films: R by the balls' given sizes over the given R; NaN where not both are given
   double mill_radius = kNotGiven;  // R [m]
   double tip_radius = kNotGiven;   // [m]
   int frames = 0;

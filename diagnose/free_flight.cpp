@@ -40,12 +40,13 @@ void FreeFlights::add(double time, std::span<const Sighting> balls) {
     Window w;
     if (const auto before = open_.find(s.ball); before != open_.end() && time - before->second.t.back() < kWindow / 2)
       w = std::move(before->second);
+    w.radius = s.radius;
     w.t.push_back(time);
     w.x.push_back(s.x);
     w.y.push_back(s.y);
     if (w.t.back() - w.t.front() >= kWindow && static_cast<int>(w.t.size()) >= kLeastFrames) {
       use(w);
-      w = {{w.t.back()}, {w.x.back()}, {w.y.back()}};
+      continue;  // the next begins afresh: two that share a place would share its error
     }
     going_on[s.ball] = std::move(w);
   }
@@ -63,30 +64,29 @@ void FreeFlights::use(const Window& w) {
     basis.row(i) << 1, t, t * t / 2;
     place.row(i) << w.x[k], w.y[k];
   }
-  const Eigen::MatrixXd fit = (basis.transpose() * basis).ldlt().solve(basis.transpose() * place);
-  a_.push_back({fit(1, 0), fit(1, 1), fit(2, 0), fit(2, 1)});
+  const Eigen::MatrixXd information = basis.transpose() * basis;
+  const Eigen::MatrixXd fit = information.ldlt().solve(basis.transpose() * place);
+  const double misfit = std::sqrt((place - basis * fit).squaredNorm() / double(2 * (n - 3)));
+  windows_.push_back({middle, fit(0, 0), fit(0, 1), fit(1, 0), fit(1, 1), fit(2, 0), fit(2, 1), w.radius, misfit,
+                      std::sqrt(information.inverse()(1, 1))});
 }
 
 void FreeFlights::finish(const ObservationLayout& layout, const Observer& observer, Observation& into) const {
   into.value.resize(layout.size(), kNotGiven);
   into.noise.resize(layout.size(), 0);
-  if (a_.size() < kLeastWindows) return;
-  const auto n = static_cast<Eigen::Index>(a_.size());
+  if (windows_.size() < kLeastWindows) return;
+  const auto n = static_cast<Eigen::Index>(windows_.size());
   const std::size_t first = layout.first(Observable::kFlight);
   const double longer = 1 + observer.scale, slower = 1 + observer.clock, c = std::cos(observer.rotation),
                s = std::sin(observer.rotation);
-  const auto seen = [&](const std::array<double, 4>& w, int of, int axis) {  // of: velocity or acceleration
-    const auto k = static_cast<std::size_t>(2 * of);
-    const double turned = axis == 0 ? c * w[k] - s * w[k + 1] : s * w[k] + c * w[k + 1];
-    return turned * longer / (of == 0 ? slower : slower * slower);
-  };
+  const auto seen = [&](double x, double y, int axis) { return (axis == 0 ? c * x - s * y : s * x + c * y) * longer; };
   for (int axis = 0; axis < 2; ++axis) {
     Eigen::MatrixXd basis(n, 2);
     Eigen::VectorXd acceleration(n);
     for (Eigen::Index i = 0; i < n; ++i) {
-      const auto& w = a_[static_cast<std::size_t>(i)];
-      basis.row(i) << 1, seen(w, 0, axis);
-      acceleration[i] = seen(w, 1, axis);
+      const FlightWindow& w = windows_[static_cast<std::size_t>(i)];
+      basis.row(i) << 1, seen(w.vx, w.vy, axis) / slower;
+      acceleration[i] = seen(w.ax, w.ay, axis) / (slower * slower);
     }
     const Eigen::MatrixXd information = basis.transpose() * basis;
     const Eigen::Vector2d fit = information.ldlt().solve(basis.transpose() * acceleration);

@@ -9,6 +9,15 @@
 // turned camera, a wrong scale or a wrong clock (docs/diagnosis.md).
 namespace tumble::diagnose {
 
+struct FlightWindow {             // a stretch of one ball's flight, and the parabola through it
+  double time = 0, x = 0, y = 0;  // of its middle [s], [m]
+  double vx = 0, vy = 0;          // there [m/s]
+  double ax = 0, ay = 0;          // [m/s2]
+  double radius = 0;              // of the ball [m]
+  double misfit = 0;              // of the places, per degree of freedom [m]: their noise, unless something was hit
+  double velocity_error = 0;      // of vx and of vy, times the noise of places [1/s]
+};
+
 class FreeFlights {
  public:
   // A ball counts while it is farther from all others and from lifters and shell than `clearance` of its radius.
@@ -17,16 +26,18 @@ class FreeFlights {
   void add(double time, std::span<const Sighting> balls);
   // Fills the observable kFlight: acceleration at rest and its slope on velocity, by least squares, with errors.
   void finish(const ObservationLayout& layout, const Observer& observer, Observation& into) const;
+  const std::vector<FlightWindow>& windows() const { return windows_; }
 
  private:
   struct Window {
     std::vector<double> t, x, y;
+    double radius = 0;
   };
   void use(const Window& w);
 
   double tip_radius_;
-  std::map<int, Window> open_;            // by ball
-  std::vector<std::array<double, 4>> a_;  // of each window: mean velocity, acceleration
+  std::map<int, Window> open_;  // by ball
+  std::vector<FlightWindow> windows_;
 };
 
 }  // namespace tumble::diagnose

@@ -24,10 +24,12 @@ struct TorqueSample {
 struct Measurement {
   Experiment experiment;          // name, place, hold_out, numbers (filled in from the files where those bring them)
   Config config;                  // the mill as MILL.toml and the experiment's `set` have it
-  std::vector<SeenFrame> frames;  // of film, tracks or motion file; empty without
+  std::vector<SeenFrame> frames;  // of film, tracks or motion file, without repeated pictures; empty without
+  std::string frames_file;        // where they come from, for messages
   bool is_film = false;           // frames were found in pictures: see motion
-  ChargeMotion motion;            // of film or motion file: what the pictures tell of circle, rates, repeats
+  ChargeMotion motion;            // of film, tracks or motion file; of the first also circle, rates, repeats
   std::vector<TorqueSample> torque_series;  // empty without
+  Estimate torque;                          // mean, of one slice [N m], however it was measured; NaN without
   double revolutions = 0;                   // of the mill that frames or, without, the torque series cover; 0 without
 };
 

@@ -1,4 +1,5 @@
 #pragma once
+#include <cstdint>
 #include <filesystem>
 #include <span>
 #include <string>
@@ -35,7 +36,7 @@ class CsvTable {
 
   std::string name_, text_;
   std::vector<std::string> names_;
-  std::vector<std::size_t> begin_;  // of each field in text_, row by row: small even for long tables
+  std::vector<std::uint32_t> begin_;  // of each field in text_, row by row: small even for long tables
 };
 
 // Throws InputError where the file cannot be read, names no columns or one twice, has no rows, or a row of another

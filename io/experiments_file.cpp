@@ -28,6 +28,10 @@ std::string uncertainty_name(const std::string& name) {
   return name.substr(0, name.size() - unit.size()) + "_uncertainty" + unit;
 }
 
+// No instrument is that good: a slip of the unit, or a number that says how well a mean is computed. A deviation from
+// it would outweigh all other data.
+constexpr double kLeastUncertainty = 1e-6;  // of the value, of an angle of a full turn
+
 struct FileKey {
   const char* name;
   fs::path Experiment::*path;
@@ -92,6 +96,13 @@ std::optional<Flaw> flaw_of(const Experiment& e) {
     any = any || !std::isnan(m.value);
     if (!std::isnan(m.se) && std::isnan(m.value))
       return Flaw{uncertainty_name(d.name), uncertainty_name(d.name) + " without " + d.name};
+    const double whole = d.is_direction ? 360 : std::abs(m.value);
+    if (m.se < kLeastUncertainty * whole)
+      return Flaw{uncertainty_name(d.name),
+                  fmt::format("{} is {}, less than a millionth of {}; give one standard deviation of the measurement, "
+                              "such as {:.2g} {}",
+                              uncertainty_name(d.name), m.se, d.is_direction ? "a full turn" : d.name,
+                              d.is_direction ? 1.0 : 0.01 * whole, d.unit)};
   }
   for (const FileKey& f : kFiles) any = any || !(e.*f.path).empty();
   if (!any)

@@ -40,6 +40,8 @@ void walk(Io& io, Motion& m) {
   io.text("origin", m.origin);
   io.lines("caveats", m.caveats);
   io.scalar("mill/lifter_count", "", m.lifter_count);
+  io.later_scalar("mill/lifters_seen", "", m.lifters_seen);
+  io.estimate("mill/shell_by_balls", "", m.shell_by_balls);
   io.scalar("mill/radius", "m", m.mill_radius);
   io.scalar("mill/tip_radius", "m", m.tip_radius);
   io.scalar("frames/count", "", m.frames);
@@ -100,7 +102,10 @@ struct Writer {
   void scalar(const std::string& path, const char* unit, T value) {
     hdf5::write_scalar<T>(file, path, value, unit);
   }
-  void later_scalar(const std::string& path, const char* unit, double value) { scalar(path, unit, value); }
+  template <typename T>
+  void later_scalar(const std::string& path, const char* unit, T value) {
+    scalar(path, unit, value);
+  }
   void estimate(const std::string& path, const char* unit, const Estimate& e) {
     scalar(path, unit, e.value);
     scalar(path + "_se", unit, e.se);
@@ -175,7 +180,8 @@ struct Reader {
   void scalar(const std::string& path, const char*, T& value) const {
     value = hdf5::read_scalar<T>(file, path);
   }
-  void later_scalar(const std::string& path, const char* unit, double& value) const {  // older files lack it
+  template <typename T>
+  void later_scalar(const std::string& path, const char* unit, T& value) const {  // older files lack it
     if (hdf5::exists(file, path)) scalar(path, unit, value);
   }
   void estimate(const std::string& path, const char* unit, Estimate& e) const {
