@@ -79,7 +79,7 @@ Seen watch(const Config& truth, const Config& model, double noise, std::uint64_t
   const diagnose::Watched watched{&noisy.events(), &model};
   s.found = diagnose::found_laws(std::span(&watched, 1));
   s.flights = noisy.events().flights().size();
-  for (const diagnose::Impact& e : noisy.events().impacts()) ++(e.at_wall ? s.wall : s.balls);
+  for (const diagnose::SeenImpact& e : noisy.events().impacts()) ++(e.at_wall ? s.wall : s.balls);
   return s;
 }
 

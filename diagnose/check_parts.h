@@ -33,6 +33,6 @@ void check_flights(const Measurement& m, std::vector<ExactCheck>& checks);  // w
 void check_balance(const Measurement& m, std::vector<ExactCheck>& checks);  // torque, weight and power
 
 // The windows in which nothing was hit; for those who look at flights more closely.
-std::vector<FlightWindow> clean_flights(const Measurement& m);
+std::vector<FreeFall> clean_flights(const Measurement& m);
 
 }  // namespace tumble::diagnose

@@ -336,7 +336,7 @@ void ContactEvents::measure(int i, int j) {
   if (reach_ - first < kLeastBefore || last - reach_ < kLeastAfter) return;
   const Sighting& one = find(moments_[reach_], i)->seen;
   const Sighting* other = at_wall ? nullptr : &find(moments_[reach_], j)->seen;
-  Impact e;
+  SeenImpact e;
   e.at_wall = at_wall;
   e.radius_i = one.radius;
   e.radius_j = other ? other->radius : 0;
@@ -385,7 +385,7 @@ void ContactEvents::measure(int i, int j) {
   // At the wall body j is the shell: what is seen is the ball, which moves against it with the other sign.
   const double sign = at_wall ? -1 : 1;
   const auto view = [&](const Path& path) {
-    Impact::View v;
+    SeenImpact::View v;
     const double x = path.px(kink.time), y = path.py(kink.time), d = std::hypot(x, y);
     v.nx = x / d;
     v.ny = y / d;
@@ -454,19 +454,19 @@ double ContactEvents::spin_decay() const {
   return squares > 0 ? lost / squares : 0;
 }
 
-std::vector<Impact> ContactEvents::impacts() const {
+std::vector<SeenImpact> ContactEvents::impacts() const {
   const double fades = spin_decay();
   std::vector<double> scatter;
-  for (const Impact& e : impacts_) scatter.push_back(e.scatter);
+  for (const SeenImpact& e : impacts_) scatter.push_back(e.scatter);
   const double usual = median(scatter);
   // Where the wall is, the impacts know better than the camera's scale; a ball that turns back before was met by
   // another.
   std::vector<double> misses;
-  for (const Impact& e : impacts_)
+  for (const SeenImpact& e : impacts_)
     if (e.at_wall) misses.push_back(e.miss);
   const double wall = median(misses);
-  std::vector<Impact> kept;
-  for (const Impact& e : impacts_) {
+  std::vector<SeenImpact> kept;
+  for (const SeenImpact& e : impacts_) {
     if (e.at_wall && std::abs(e.miss - wall) > kSlack * e.radius_i + 2 * usual) continue;
     const double noise = usual * std::sqrt(1 / e.all.spread + 1 / e.spread_after);
     const bool alone = e.at_wall || e.stray < kStray * noise + 0.02 * (e.all.closing + e.all.parting);

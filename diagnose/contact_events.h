@@ -28,7 +28,7 @@ struct FlightWindow {  // a piece of one flight, by least squares
 };
 
 // Body j against body i, as everywhere: n from i to j or into the wall, t is n turned counter-clockwise.
-struct Impact {
+struct SeenImpact {
   double time = 0;
   bool at_wall = false;
   double radius_i = 0, radius_j = 0, mass_i = 0, mass_j = 0;  // those of j unknown at the wall
@@ -68,7 +68,7 @@ class ContactEvents {
   // Those that are to be believed: paths as straight as the others', nothing gained from elsewhere.
   std::vector<FlightWindow> flights() const;
   // Spins of impacts are those at the touch: what is lost on the way is known from flights.
-  std::vector<Impact> impacts() const;
+  std::vector<SeenImpact> impacts() const;
 
  private:
   struct Body {
@@ -114,7 +114,7 @@ class ContactEvents {
   std::deque<Moment> moments_;
   std::vector<Flight> open_;  // by ball
   std::vector<FlightWindow> flights_;
-  std::vector<Impact> impacts_;
+  std::vector<SeenImpact> impacts_;
 };
 
 }  // namespace tumble::diagnose

@@ -259,7 +259,7 @@ ContactLaws::ContactLaws(const Config& model) : config_(model), model_(model), e
 std::vector<MeasuredLaw> ContactLaws::laws() const {
   std::vector<MeasuredLaw> all;
   const std::vector<FlightWindow> flights = events_.flights();
-  const std::vector<Impact> impacts = events_.impacts();
+  const std::vector<SeenImpact> impacts = events_.impacts();
   for (const LawKind& kind : kKinds) {
     std::vector<LawBin> bins = bins_of(samples_of(kind.law, flights, impacts, config_, &model_, {}), kind,
                                        unit_of(kind, config_), kLeastOfLaw);
@@ -292,7 +292,7 @@ std::vector<MeasuredLaw> ContactLaws::laws() const {
 LawNumbers ContactLaws::numbers(const Observer& observer) const {
   LawNumbers n;
   const std::vector<FlightWindow> flights = events_.flights();
-  const std::vector<Impact> impacts = events_.impacts();
+  const std::vector<SeenImpact> impacts = events_.impacts();
   for (const LawKind& kind : kKinds)
     for (const LawBin& b : bins_of(samples_of(kind.law, flights, impacts, config_, nullptr, observer), kind,
                                    unit_of(kind, config_), kLeastOfNumber)) {

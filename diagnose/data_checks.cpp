@@ -87,10 +87,10 @@ void check_times(const Measurement& m, const MillShape& shape) {
 }
 
 void check_down(const Measurement& m) {
-  const std::vector<FlightWindow> windows = clean_flights(m);
+  const std::vector<FreeFall> windows = clean_flights(m);
   if (windows.size() < kFewestFlights) return;
   std::vector<double> ax, ay;
-  for (const FlightWindow& w : windows) ax.push_back(w.ax), ay.push_back(w.ay);
+  for (const FreeFall& w : windows) ax.push_back(w.ax), ay.push_back(w.ay);
   const double x = median_of(std::move(ax)), y = median_of(std::move(ay)), g = std::hypot(x, y);
   const double turned = degrees(std::atan2(x, -y));
   if (std::abs(turned) > kTurnedDeg)

@@ -47,15 +47,15 @@ struct FlightFit {
   }
 };
 
-std::vector<Row> rows_of(const Measurement& m, const std::vector<FlightWindow>& windows, std::size_t& in_pool) {
+std::vector<Row> rows_of(const Measurement& m, const std::vector<FreeFall>& windows, std::size_t& in_pool) {
   const double omega = turning_speed(m.frames, m.config);
   const double level = find_parameter(*find_effect("slurry_pool"), "level")->typical * make_mill_shape(m.config).radius;
   std::vector<double> misfits;
-  for (const FlightWindow& w : windows) misfits.push_back(w.misfit);
+  for (const FreeFall& w : windows) misfits.push_back(w.misfit);
   const double noise = median_of(std::move(misfits));
   std::vector<Row> rows;
   in_pool = 0;
-  for (const FlightWindow& w : windows) {
+  for (const FreeFall& w : windows) {
     const int k = class_of(m.config, w.radius);
     if (k < 0) continue;
     const BallClass& ball = m.config.charge.balls[static_cast<std::size_t>(k)];
@@ -130,16 +130,16 @@ Estimate part(const FlightFit& f, Term t) {
 
 }  // namespace
 
-std::vector<FlightWindow> clean_flights(const Measurement& m) {
+std::vector<FreeFall> clean_flights(const Measurement& m) {
   FreeFlights flights(make_mill_shape(m.config).tip_radius);
   for (const SeenFrame& f : m.frames) flights.add(f.time, f.balls);
-  std::vector<FlightWindow> windows = flights.windows();
-  std::erase_if(windows, [](const FlightWindow& w) { return std::isnan(w.radius); });
+  std::vector<FreeFall> windows = flights.windows();
+  std::erase_if(windows, [](const FreeFall& w) { return std::isnan(w.radius); });
   if (windows.empty()) return windows;
   std::vector<double> misfits;
-  for (const FlightWindow& w : windows) misfits.push_back(w.misfit);
+  for (const FreeFall& w : windows) misfits.push_back(w.misfit);
   const double most = kHit * median_of(std::move(misfits)) + 1e-6;
-  std::erase_if(windows, [&](const FlightWindow& w) { return w.misfit > most; });
+  std::erase_if(windows, [&](const FreeFall& w) { return w.misfit > most; });
   return windows;
 }
 

@@ -156,7 +156,7 @@ Rows rows_of_impacts(const std::vector<std::unique_ptr<Model>>& models, bool res
   bool sizes = false, at_wall = false, between = false;
   for (const auto& m : models) {
     const Config& config = *m->watched.model;
-    const std::vector<Impact> impacts = m->watched.events->impacts();
+    const std::vector<SeenImpact> impacts = m->watched.events->impacts();
     std::vector<LawSample> samples;
     for (const bool wall : {false, true}) {
       const Law law = restitution ? (wall ? Law::kWallRestitution : Law::kBallRestitution)
@@ -170,7 +170,7 @@ Rows rows_of_impacts(const std::vector<std::unique_ptr<Model>>& models, bool res
     const double usual = mean_radius(config.charge.balls);
     for (std::size_t k = 0; k < samples.size(); ++k) {
       LawSample s = samples[k];
-      const Impact& e = impacts[static_cast<std::size_t>(s.event)];
+      const SeenImpact& e = impacts[static_cast<std::size_t>(s.event)];
       double weight = 1 / (1 / e.all.spread + 1 / e.spread_after);  // `up` and `down` carry it already
       if (restitution) {                                            // two ways to see one impact: one row
         const LawSample& t = samples[++k];

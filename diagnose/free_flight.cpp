@@ -84,7 +84,7 @@ void FreeFlights::finish(const ObservationLayout& layout, const Observer& observ
     Eigen::MatrixXd basis(n, 2);
     Eigen::VectorXd acceleration(n);
     for (Eigen::Index i = 0; i < n; ++i) {
-      const FlightWindow& w = windows_[static_cast<std::size_t>(i)];
+      const FreeFall& w = windows_[static_cast<std::size_t>(i)];
       basis.row(i) << 1, seen(w.vx, w.vy, axis) / slower;
       acceleration[i] = seen(w.ax, w.ay, axis) / (slower * slower);
     }

@@ -9,7 +9,7 @@
 // turned camera, a wrong scale or a wrong clock (docs/diagnosis.md).
 namespace tumble::diagnose {
 
-struct FlightWindow {             // a stretch of one ball's flight, and the parabola through it
+struct FreeFall {                 // a stretch of one ball's flight, and the parabola through it
   double time = 0, x = 0, y = 0;  // of its middle [s], [m]
   double vx = 0, vy = 0;          // there [m/s]
   double ax = 0, ay = 0;          // [m/s2]
@@ -26,7 +26,7 @@ class FreeFlights {
   void add(double time, std::span<const Sighting> balls);
   // Fills the observable kFlight: acceleration at rest and its slope on velocity, by least squares, with errors.
   void finish(const ObservationLayout& layout, const Observer& observer, Observation& into) const;
-  const std::vector<FlightWindow>& windows() const { return windows_; }
+  const std::vector<FreeFall>& windows() const { return windows_; }
 
  private:
   struct Window {
@@ -37,7 +37,7 @@ class FreeFlights {
 
   double tip_radius_;
   std::map<int, Window> open_;  // by ball
-  std::vector<FlightWindow> windows_;
+  std::vector<FreeFall> windows_;
 };
 
 }  // namespace tumble::diagnose

@@ -14,7 +14,7 @@ struct Rebound {
   double closing, parting, sliding, sliding_after;
 };
 
-Rebound rebound_of(const Impact& e, const Impact::View& v, const Observer& o) {
+Rebound rebound_of(const SeenImpact& e, const SeenImpact::View& v, const Observer& o) {
   const double faster = (1 + o.scale) / (1 + o.clock);
   Rebound r{v.closing * faster, v.parting * faster, v.sliding * faster, v.sliding_after * faster};
   if (!e.at_wall) return r;
@@ -27,21 +27,21 @@ Rebound rebound_of(const Impact& e, const Impact::View& v, const Observer& o) {
   return r;
 }
 
-double slip_of(const Impact& e, const Rebound& r, const Observer& o) {
+double slip_of(const SeenImpact& e, const Rebound& r, const Observer& o) {
   const double turning = (e.radius_i * e.spin_i + (e.at_wall ? 0 : e.radius_j * e.spin_j)) / (1 + o.clock);
   return r.sliding + (e.at_wall ? e.wall_speed * (1 + o.scale) / (1 + o.clock) : 0) - turning;
 }
 
 // The same impact as the model has it; a ball whose spin is not seen is taken to roll.
-sim::ConfigLaws::Parting by_model(const sim::ConfigLaws& model, const Impact& e, const Rebound& r) {
+sim::ConfigLaws::Parting by_model(const sim::ConfigLaws& model, const SeenImpact& e, const Rebound& r) {
   const double slip = slip_of(e, r, {}), roll = e.spin_j - e.spin_i;
   return model.rebound({e.at_wall, e.mass_i, e.radius_i, e.mass_j, e.radius_j, r.closing,
                         std::isfinite(slip) ? slip : 0, std::isfinite(roll) ? roll : 0});
 }
 
-double spread_of(const Impact& e, const Impact::View& v) { return 1 / (1 / v.spread + 1 / e.spread_after); }
+double spread_of(const SeenImpact& e, const SeenImpact::View& v) { return 1 / (1 / v.spread + 1 / e.spread_after); }
 
-void add_restitution(std::vector<LawSample>& out, int event, const Impact& e, const sim::ConfigLaws* model,
+void add_restitution(std::vector<LawSample>& out, int event, const SeenImpact& e, const sim::ConfigLaws* model,
                      const Observer& o) {
   for (std::size_t g = 0; g < 2; ++g) {
     const Rebound chosen = rebound_of(e, e.half[1 - g], o), r = rebound_of(e, e.half[g], o);
@@ -53,7 +53,7 @@ void add_restitution(std::vector<LawSample>& out, int event, const Impact& e, co
 }
 
 // A sphere's contact point loses 7/2 of what friction takes from the relative velocity of the middles.
-void add_friction(std::vector<LawSample>& out, int event, const Impact& e, const Config& config,
+void add_friction(std::vector<LawSample>& out, int event, const SeenImpact& e, const Config& config,
                   const sim::ConfigLaws* model, const Observer& o) {
   const Rebound r = rebound_of(e, e.all, o);
   const double slip = slip_of(e, r, o), kick = r.closing + r.parting;
@@ -68,7 +68,7 @@ void add_friction(std::vector<LawSample>& out, int event, const Impact& e, const
 }
 
 // Of the two spins' changes the part that friction has no hand in.
-void add_rolling(std::vector<LawSample>& out, int event, const Impact& e, const sim::ConfigLaws* model,
+void add_rolling(std::vector<LawSample>& out, int event, const SeenImpact& e, const sim::ConfigLaws* model,
                  const Observer& o) {
   const double per_clock = 1 / (1 + o.clock), roll = (e.spin_j - e.spin_i) * per_clock;
   const Rebound r = rebound_of(e, e.all, o);
@@ -133,7 +133,7 @@ FlightWindow seen_by(const Observer& o, FlightWindow w) {
   return w;
 }
 
-std::vector<LawSample> samples_of(Law law, std::span<const FlightWindow> flights, std::span<const Impact> impacts,
+std::vector<LawSample> samples_of(Law law, std::span<const FlightWindow> flights, std::span<const SeenImpact> impacts,
                                   const Config& config, const sim::ConfigLaws* model, const Observer& observer) {
   std::vector<LawSample> out;
   if (law == Law::kDrag || law == Law::kLift || law == Law::kEnds || law == Law::kSpinDecay) {
@@ -143,7 +143,7 @@ std::vector<LawSample> samples_of(Law law, std::span<const FlightWindow> flights
   }
   const bool at_wall = law == Law::kWallRestitution || law == Law::kWallFriction;
   for (std::size_t k = 0; k < impacts.size(); ++k) {
-    const Impact& e = impacts[k];
+    const SeenImpact& e = impacts[k];
     const int event = static_cast<int>(k);
     if (e.at_wall != at_wall) continue;
     if (law == Law::kRolling)

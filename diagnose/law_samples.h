@@ -30,7 +30,7 @@ struct LawSample {
 };
 
 // `model` may be null. As `observer` would have it.
-std::vector<LawSample> samples_of(Law law, std::span<const FlightWindow> flights, std::span<const Impact> impacts,
+std::vector<LawSample> samples_of(Law law, std::span<const FlightWindow> flights, std::span<const SeenImpact> impacts,
                                   const Config& config, const sim::ConfigLaws* model, const Observer& observer);
 
 // Mean over the time of a flight's window of a vector that hangs on place and velocity, with the weight that the fitted
