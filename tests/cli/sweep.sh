@@ -79,7 +79,7 @@ experiments() {  # POWER of the held-out one
   printf '[[experiment]]\nname = "out"\nhold_out = true\nset = { "mill.speed" = 0.7 }\npower_W = %s\n' "$1"
 }
 experiments 14 >e.toml
-experiments 99 >f.toml
+experiments 20 >f.toml
 fit=(calibrate "$mill" --fit contact.friction=0.05:0.5 "${short[@]}" --simulations 12 --repeat 2 --quiet)
 "$tumble" "${fit[@]}" --measured e.toml --threads 1 -o one || fail "the calibration"
 for wait in 0.1 0.3; do

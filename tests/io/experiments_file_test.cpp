@@ -98,7 +98,8 @@ TEST(ExperimentsFile, NamesPlaceFindingAndRemedy) {
       {head + "power_W = nan\n", "e.toml:3: a: power_W: must be a number"},
       {head + "power_W = 1\npower_uncertainty_W = 0\n", "e.toml:4: a: power_uncertainty_W: found 0, must be > 0 W"},
       {head + "power_W = 10\npower_uncertainty_W = 1e-6\n",
-       "e.toml:4: a: power_uncertainty_W is 1e-06, less than a millionth"},
+       "e.toml:4: a: power_uncertainty_W is 1e-06, less than a millionth of power_W; give one standard "
+       "deviation of the measurement, such as 0.1 W"},
       {head + "power_W = 1\ntoe_uncertainty_deg = 2\n", "e.toml:4: a: toe_uncertainty_deg without toe_deg"},
       {head + "power_W = 1\ntorque_N_m = 2\n",
        "e.toml:4: a: torque_N_m given beside power_W, which says the same; keep one of the two"},
