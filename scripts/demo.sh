@@ -7,7 +7,7 @@ output=${1:-out/demo}
 
 scripts/setup.sh
 cmake --preset release -DTUMBLE_TESTS=OFF -DTUMBLE_WARNINGS_AS_ERRORS=OFF >/dev/null
-cmake --build --preset release
+cmake --build --preset release --target tumble
 mkdir -p "$(dirname "$output")"
 build/release/cli/tumble run examples/lab_mill_55cm.toml -o "$output" --force
 echo "
