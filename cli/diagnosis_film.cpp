@@ -23,12 +23,6 @@ struct Played {
   InStep step;  // of the film and it
 };
 
-double mean_of(const std::vector<double>& values) {
-  double sum = 0;
-  for (const double v : values) sum += v;
-  return sum / static_cast<double>(values.size());
-}
-
 }  // namespace
 
 DiagnosisFilmFile make_diagnosis_film(const fs::path& measured, const ChargeMotion& motion, const io::RunReader& before,

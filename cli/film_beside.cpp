@@ -253,12 +253,6 @@ std::vector<Eigen::Vector2d> surface_of(const ChargeMotion& m) {
   return line;
 }
 
-double mean_of(const std::vector<double>& values) {
-  double sum = 0;
-  for (const double v : values) sum += v;
-  return sum / static_cast<double>(values.size());
-}
-
 }  // namespace
 
 BesideResult render_beside(const io::RunReader& run, BesidePlan plan, const fs::path& output,

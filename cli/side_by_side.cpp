@@ -92,6 +92,12 @@ std::string caption_of(const Shown& s) {
 
 }  // namespace
 
+double mean_of(const std::vector<double>& values) {
+  double sum = 0;
+  for (const double v : values) sum += v;
+  return sum / static_cast<double>(values.size());
+}
+
 double span_of(const ChargeMotion& m) {
   return m.profile.size() < 2 ? 0 : m.profile.back().time - m.profile.front().time;
 }

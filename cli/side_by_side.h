@@ -35,6 +35,7 @@ struct Stretch {
   double step = 0;     // between pictures, likewise
 };
 
+double mean_of(const std::vector<double>& values);
 double span_of(const ChargeMotion& motion);        // from its first frame to its last [s]
 double seconds_shown(const ChargeMotion& motion);  // of that: no more than three turns
 // So many seconds, as slowly as makes them last, and no more pictures than a page bears.

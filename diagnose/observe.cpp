@@ -6,37 +6,23 @@
 #include "core/quantile.h"
 #include "core/units.h"
 #include "diagnose/free_flight.h"
+#include "diagnose/seen_charge.h"
 
 namespace tumble::diagnose {
 namespace {
 
 constexpr double kShortestSpan = 0.004;  // [s]
 
-// Mass of a ball of that radius: of the class that comes nearest.
-double mass_of(const Config& config, double radius) {
-  double mass = kNotGiven, nearest = INFINITY;
-  for (const BallClass& b : config.charge.balls) {
-    const double off = std::abs(std::log(radius / b.radius));
-    if (!(off < nearest)) continue;
-    nearest = off;
-    mass = b.mass;
-  }
-  return mass;
-}
-
-// Weight of the charge times the place of its centre of mass [N m of one slice].
+// Weight of the charge times the place of its centre of mass, as the observer has it [N m of one slice].
 double weight_couple(const Measurement& m, const Observer& observer) {
-  const double total = slice_mass(m.config, class_counts(m.config));
-  const double c = std::cos(observer.rotation) * (1 + observer.scale),
-               s = std::sin(observer.rotation) * (1 + observer.scale);
-  double sum = 0, mass = 0;
-  for (const SeenFrame& frame : m.frames)
-    for (const Sighting& ball : frame.balls) {
-      const double weight = mass_of(m.config, ball.radius);
-      mass += weight;
-      sum += weight * (c * ball.x - s * ball.y);
-    }
-  return total * kGravity * sum / mass;
+  const SeenCharge charge = see_charge(m);
+  const double weight = slice_mass(m.config, class_counts(m.config)) * kGravity;
+  double moment = 0, height = 0;
+  for (std::size_t f = 0; f < charge.time.size(); ++f) {
+    moment += charge.moment[f] / double(charge.time.size());
+    height += charge.height[f] / double(charge.time.size());
+  }
+  return (1 + observer.scale) * (std::cos(observer.rotation) * moment - std::sin(observer.rotation) * weight * height);
 }
 
 }  // namespace

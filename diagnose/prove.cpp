@@ -109,11 +109,13 @@ double chance_limit(const std::vector<const Replicas*>& sets, const std::vector<
   for (const Replicas* set : sets) {
     const double n = double(set->seen.size());
     if (n < 2) continue;
+    std::vector<double> mean;
+    for (std::size_t i = first; i < first + count; ++i) mean.push_back(mean_of(set->seen, i));
     for (const auto& run : set->seen) {
       double most = 0;
       for (std::size_t i = first; i < first + count; ++i) {
         // Against the mean of the others: n / (n - 1) times its distance from the mean of all.
-        const double z = (run[i] - mean_of(set->seen, i)) * std::sqrt(n / (n - 1)) / scatter[i];
+        const double z = (run[i] - mean[i - first]) * std::sqrt(n / (n - 1)) / scatter[i];
         if (std::isfinite(z)) most = std::max(most, std::abs(z));
       }
       largest.push_back(most);

@@ -20,7 +20,7 @@ std::vector<double> drum_angles(double step_deg, double sigma_deg, std::uint64_t
   for (int i = 0; i < 140; ++i) {
     const double pictures = random.below(lost) == 0 ? 0 : random.below(lost) == 0 ? 2 : 1;
     turned += radians(step_deg) * pictures * (i > 70 ? change : 1.0);
-    angles.push_back(turned + 0.05 / 6 * std::sin(6 * turned) + radians(sigma_deg) * normal_number(random));
+    angles.push_back(turned + 0.05 / 6 * std::sin(6 * turned) + radians(sigma_deg) * gaussian(random));
   }
   return angles;
 }
@@ -39,9 +39,9 @@ TEST(EvenTurn, AChargeThatSlidesDoesNot) {
     std::vector<double> angles;
     double turned = 0, speed = 0.5;
     for (int i = 0; i < 140; ++i) {
-      speed += 0.1 * (0.6 - speed) + 0.08 * normal_number(random);  // surges over some ten pictures
+      speed += 0.1 * (0.6 - speed) + 0.08 * gaussian(random);  // surges over some ten pictures
       turned += radians(1.5) * speed;
-      angles.push_back(turned + radians(0.05) * normal_number(random));
+      angles.push_back(turned + radians(0.05) * gaussian(random));
     }
     const Evenness evenness = evenness_of(angles);
     EXPECT_FALSE(evenness.even) << seed;

@@ -10,10 +10,6 @@
 // Balls of a mill as a camera of any rate and roll sees them: carried on circles, and some of them in flight.
 namespace tumble::analysis {
 
-inline double normal_number(Random& random) {
-  return std::sqrt(-2 * std::log(1 - random.uniform())) * std::cos(2 * kPi * random.uniform());
-}
-
 struct FallingBalls {
   double fps = 120;
   double roll_deg = 0;                     // the picture turned counter-clockwise by this
@@ -59,8 +55,8 @@ inline std::vector<TimedPlace> sightings(const FallingBalls& scene, Random& rand
         place_at((f + scene.readout_share * p.row_share) / scene.fps, x, y);
         p.row_share = 0.5 - (x * std::sin(roll) + y * std::cos(roll)) / (2.6 * scene.mill_radius);
       }
-      p.x = x * std::cos(roll) - y * std::sin(roll) + scene.noise * normal_number(random);
-      p.y = x * std::sin(roll) + y * std::cos(roll) + scene.noise * normal_number(random);
+      p.x = x * std::cos(roll) - y * std::sin(roll) + scene.noise * gaussian(random);
+      p.y = x * std::sin(roll) + y * std::cos(roll) + scene.noise * gaussian(random);
       if (random.uniform() < scene.wrong) p.x += random.uniform(-0.05, 0.05), p.y += random.uniform(-0.05, 0.05);
       if (random.uniform() < scene.lost) continue;
       places.push_back(p);

@@ -42,9 +42,9 @@ Truth make_film(const Film& film, std::uint64_t seed, std::vector<double>& diffe
     truth.source.push_back(source);
     const double turned = film.turn_deg * source * (1 + 0.5 * film.drift * source / film.frames);
     angle.push_back(radians(turned) + film.ripple * std::sin(radians(turned)) +
-                    radians(film.sigma_deg) * normal_number(random));
+                    radians(film.sigma_deg) * gaussian(random));
     const double moved = 1 - std::exp(-0.3 * film.turn_deg * step);  // no more than all of the picture can change
-    difference.push_back(i == 0 ? kNotGiven : (0.3 + 14 * moved) * std::exp(0.06 * normal_number(random)));
+    difference.push_back(i == 0 ? kNotGiven : (0.3 + 14 * moved) * std::exp(0.06 * gaussian(random)));
   }
   if (!film.pictures) difference.clear();
   return truth;
@@ -125,7 +125,7 @@ TEST(FrameClock, HalfOfAllFramesMayBeRepeats) {
   std::vector<int> repeats;
   Random random(4);
   for (int i = 0; i < 200; ++i) {  // 15 frames/s in a file of 30
-    angle.push_back(radians(4.0 * (i / 2) + 0.05 * normal_number(random)));
+    angle.push_back(radians(4.0 * (i / 2) + 0.05 * gaussian(random)));
     difference.push_back(i == 0 ? kNotGiven : i % 2 ? 0.4 : 9 + random.uniform());
     if (i % 2) repeats.push_back(i);
   }
@@ -140,10 +140,10 @@ TEST(FrameClock, ACameraThatChangesItsRateLosesNothing) {
     Random random(5);
     double turned = 0;
     for (int i = 0; i < 300; ++i) {
-      const double step = (i > 150 ? 2 * change : 2.0) * (1 + 0.02 * normal_number(random));
+      const double step = (i > 150 ? 2 * change : 2.0) * (1 + 0.02 * gaussian(random));
       turned += step;
-      angle.push_back(radians(turned + 0.05 * normal_number(random)));
-      difference.push_back(i == 0 ? kNotGiven : 4 * step * std::exp(0.05 * normal_number(random)));
+      angle.push_back(radians(turned + 0.05 * gaussian(random)));
+      difference.push_back(i == 0 ? kNotGiven : 4 * step * std::exp(0.05 * gaussian(random)));
     }
     const FrameClock clock = clock_of(difference, angle);
     EXPECT_TRUE(clock.duplicated.empty() && clock.dropped.empty()) << change;
@@ -165,9 +165,9 @@ TEST(FrameClock, AnglesDoNotAccuseFramesAgainstThePictures) {
       double step = sure ? 1 : 0.8;
       if (lag > 1.2) step += lag, lag = 0;
       if (i == kGap) step += 1;
-      angle.push_back(angle.back() + radians(1.5 * step + 0.03 * normal_number(random)));
-      difference.push_back((i == kGap ? 14 : 10) * std::exp(0.03 * normal_number(random)));
-      if (i > 1) over_two.push_back((i == kGap || i == kGap + 1 ? 17 : 14) * std::exp(0.03 * normal_number(random)));
+      angle.push_back(angle.back() + radians(1.5 * step + 0.03 * gaussian(random)));
+      difference.push_back((i == kGap ? 14 : 10) * std::exp(0.03 * gaussian(random)));
+      if (i > 1) over_two.push_back((i == kGap || i == kGap + 1 ? 17 : 14) * std::exp(0.03 * gaussian(random)));
     }
     angle[40] = angle[39];  // and once it stands
     difference[40] *= 0.9;
@@ -187,7 +187,7 @@ TEST(FrameClock, UnsteadyStepsAloneAreNoGap) {
     Random random(seed);
     std::vector<double> angle{0};
     for (int i = 1; i < 160; ++i) {
-      double step = 0.75 + 0.3 * normal_number(random);
+      double step = 0.75 + 0.3 * gaussian(random);
       if (random.below(25) == 0) step += 0.9;
       angle.push_back(angle.back() + radians(1.5 * step));
     }

@@ -2,17 +2,9 @@
 # Measured data that cannot be right are refused in one line that tells where, what and what would be right, before any
 # simulation; data in order are read, a film once.
 #   tests/cli/measurements.sh TUMBLE_BINARY SOURCE_FOLDER
-set -uo pipefail
-tumble=$(realpath "$1")
-source=$(realpath "$2")
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-cd "$work"
-failures=0
+source "$(dirname "$0")/promises.sh"
 cases=0
 sed 's/^seed.*/seed = 3/; s/^revolutions.*/revolutions = 1.2/' "$source/examples/lab_mill_55cm.toml" >mill.toml
-
-fail() { failures=$((failures + 1)); echo "FAILED: $*"; }
 
 "$tumble" simulate mill.toml -o run.h5 --quiet --set run.frames_per_second=250 || fail "the run"
 "$tumble" analyse run.h5 -o motion.h5 --csv csv --quiet || fail "its motion"
@@ -23,8 +15,8 @@ awk -F, 'NR == FNR { angle[$1] = $3; next }
          FNR == 1 { print "frame,time_s,id,x_m,y_m,radius_m,mill_angle_deg"; next }
          { printf "%s,%s,%s,%s,%s,%s,%s\n", $1, $2, $3, $4, $5, $8, angle[$1] }' csv/profile.csv csv/tracks.csv >good.csv
 
-# refused PATTERN 'EXPERIMENT LINES': one experiment that holds these lines.
-refused() {
+# bad_data PATTERN 'EXPERIMENT LINES': one experiment that holds these lines.
+bad_data() {
   cases=$((cases + 1))
   printf '[[experiment]]\nname = "E"\nset = { "charge.count" = 112 }\n%b\n' "$2" >experiments.toml
   rm -rf out
@@ -39,7 +31,7 @@ refused() {
 # tracks PATTERN AWK: the good tracks with something done to them.
 tracks() {
   awk -F, -v OFS=, "NR == 1 { print; next } $2 { print }" good.csv >bad.csv
-  refused "$1" 'tracks = "bad.csv"'
+  bad_data "$1" 'tracks = "bad.csv"'
 }
 
 tracks 'bad.csv:52:[0-9]*: x_m is "nan"' 'NR == 52 { $4 = "nan" }'
@@ -54,23 +46,23 @@ tracks 'clockwise' '{ $4 = -$4; $7 = 180 - $7 }'
 tracks 'turns at 36.* rev/min, MILL.toml and set have 40' '{ $2 *= 1.12 }'
 tracks '80 balls where MILL.toml and set have 112' '$3 >= 80 { next }'
 head -1 good.csv >bad.csv
-refused 'bad.csv: has no rows' 'tracks = "bad.csv"'
+bad_data 'bad.csv: has no rows' 'tracks = "bad.csv"'
 cut -d, -f1-4 good.csv >bad.csv
-refused 'bad.csv: has no column y_m' 'tracks = "bad.csv"'
-refused 'no such file' 'tracks = "absent.csv"'
+bad_data 'bad.csv: has no column y_m' 'tracks = "bad.csv"'
+bad_data 'no such file' 'tracks = "absent.csv"'
 
 awk -F, 'NR == 9 { print "0.0001," $2; next } { print }' torque.csv >bad.csv
-refused 'bad.csv:9:1: time_s is 0.0001 after .* must grow' 'torque_series = "bad.csv"'
+bad_data 'bad.csv:9:1: time_s is 0.0001 after .* must grow' 'torque_series = "bad.csv"'
 awk -F, 'NR == 9 { print $1 ",NaN"; next } { print }' torque.csv >bad.csv
-refused 'bad.csv:9:[0-9]*: torque_N_m is "NaN"' 'torque_series = "bad.csv"'
-refused 'must lie between .* the whole mill' 'torque_N_m = 0.09'
-refused 'must lie between .* the whole mill' 'power_W = 300000'
-refused 'torque and frames of the same experiment' 'tracks = "good.csv"\ntorque_N_m = 60'
-refused 'torque_uncertainty_N_m is 1e-07, less than a millionth' 'torque_N_m = 90\ntorque_uncertainty_N_m = 1e-7'
-refused 'toe_uncertainty_deg is 1e-05' 'toe_deg = 230\ntoe_uncertainty_deg = 1e-5'
-refused 'brings no data' ''
-refused 'holds out every experiment' 'torque_N_m = 90\nhold_out = true'
-refused 'contact.friction: is 1e-09, less than a millionth of its value' 'torque_N_m = 90\n[uncertain]\n"contact.friction" = 1e-9'
+bad_data 'bad.csv:9:[0-9]*: torque_N_m is "NaN"' 'torque_series = "bad.csv"'
+bad_data 'must lie between .* the whole mill' 'torque_N_m = 0.09'
+bad_data 'must lie between .* the whole mill' 'power_W = 300000'
+bad_data 'torque and frames of the same experiment' 'tracks = "good.csv"\ntorque_N_m = 60'
+bad_data 'torque_uncertainty_N_m is 1e-07, less than a millionth' 'torque_N_m = 90\ntorque_uncertainty_N_m = 1e-7'
+bad_data 'toe_uncertainty_deg is 1e-05' 'toe_deg = 230\ntoe_uncertainty_deg = 1e-5'
+bad_data 'brings no data' ''
+bad_data 'holds out every experiment' 'torque_N_m = 90\nhold_out = true'
+bad_data 'contact.friction: is 1e-09, less than a millionth of its value' 'torque_N_m = 90\n[uncertain]\n"contact.friction" = 1e-9'
 
 # What is in order is read: the toe of tracks is the toe of the run that they come from.
 printf '[[experiment]]\nname = "E"\ntracks = "good.csv"\ntorque_series = "torque.csv"\n' >experiments.toml

@@ -10,10 +10,6 @@
 // neighbouring numbers together. Shares nothing with the response that is fitted to it but that it is smooth.
 namespace tumble::diagnose {
 
-inline double normal(Random& random) {
-  return std::sqrt(-2 * std::log(1 - random.uniform())) * std::cos(6.283185307 * random.uniform());
-}
-
 struct Strengths {
   double bend = 0, twist = 0, scale = 0;
 };
@@ -53,11 +49,11 @@ class MadeUpMill {
   // `stranger`: strength of what is on nobody's list. Keys not given: as likely as they are.
   SignatureRun run(Random& random, const Strengths& s, double stranger = 0, double a = NAN, double b = NAN) const {
     SignatureRun run;
-    run.uncertain = {std::isnan(a) ? normal(random) : a, std::isnan(b) ? normal(random) : b};
+    run.uncertain = {std::isnan(a) ? gaussian(random) : a, std::isnan(b) ? gaussian(random) : b};
     run.revolutions = 8;
     std::vector<double> chance(kNumbers);
     double drift = 0;
-    for (double& c : chance) c = drift = 0.6 * drift + 0.8 * normal(random);
+    for (double& c : chance) c = drift = 0.6 * drift + 0.8 * gaussian(random);
     const auto seen_by = [&](double scale) {
       Observation seen;
       seen.noise.assign(kNumbers, 0);
