@@ -76,7 +76,7 @@ Seen watch(const Config& truth, const Config& model, double noise, std::uint64_t
   s.simulating = simulating;
   s.laws = noisy.laws();
   s.with_noise = noisy.numbers();
-  const diagnose::Watched watched{&noisy.events(), &model};
+  const diagnose::SeenExperiment watched{&noisy.events(), &model};
   s.found = diagnose::found_laws(std::span(&watched, 1));
   s.flights = noisy.events().flights().size();
   for (const diagnose::SeenImpact& e : noisy.events().impacts()) ++(e.at_wall ? s.wall : s.balls);

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <vector>
 
@@ -15,7 +14,7 @@
 namespace tumble::cli {
 namespace {
 
-constexpr int kWidth = 1440, kHeight = 600;  // [px]
+constexpr int kCellWidth = 480, kHeight = 600;  // [px]
 
 struct Played {
   const io::RunReader* run;
@@ -26,9 +25,10 @@ struct Played {
 }  // namespace
 
 DiagnosisFilmFile make_diagnosis_film(const fs::path& measured, const ChargeMotion& motion, const io::RunReader& before,
-                                      const io::RunReader& after, const fs::path& output,
+                                      const io::RunReader* after, const fs::path& output,
                                       const CommonOptions& options) {
-  std::array<Played, 2> runs{Played{&before, {}, {}}, Played{&after, {}, {}}};
+  std::vector<Played> runs{{&before, {}, {}}};
+  if (after != nullptr) runs.push_back({after, {}, {}});
   double from = 0, seconds = seconds_shown(motion);
   for (Played& p : runs) {
     p.motion = measure_run(*p.run, options);
@@ -43,12 +43,18 @@ DiagnosisFilmFile make_diagnosis_film(const fs::path& measured, const ChargeMoti
   const std::vector<int> frames = frames_of(motion, stretch);
 
   render::Style style;
-  style.width = kWidth;
+  style.width = kCellWidth * static_cast<int>(1 + runs.size());
   style.height = kHeight;
   style.overlay.toe = style.overlay.shoulder = false;
   style.slow = 1 / (kSmallRate * stretch.step);
-  render::Sheet sheet({{before.setup(), "Measured"}, {before.setup(), "Before"}, {after.setup(), "After"}}, style);
-  const Range scale = scale_of({{&before, nullptr, "", 0}, {&after, nullptr, "", 0}}, style.colour);
+  std::vector<render::SheetMill> mills{{before.setup(), "Measured"}};
+  std::vector<Shot> shots;
+  for (const Played& p : runs) {
+    mills.push_back({p.run->setup(), after == nullptr ? "Model" : p.run == after ? "After" : "Before"});
+    shots.push_back({p.run, nullptr, "", 0});
+  }
+  render::Sheet sheet(mills, style);
+  const Range scale = scale_of(shots, style.colour);
   sheet.set_scale(scale.low, scale.high);
 
   const bool clockwise = motion.rotation == Rotation::kClockwise;
@@ -63,34 +69,36 @@ DiagnosisFilmFile make_diagnosis_film(const fs::path& measured, const ChargeMoti
 
   for (const double quality : kSmallQuality) {
     io::FilmFormat format;
-    format.width = kWidth;
+    format.width = style.width;
     format.height = kHeight;
     format.fps_numerator = static_cast<int>(kSmallRate);
     format.crf = quality;
     format.threads = options.threads;
     io::FilmWriter writer(output.string(), format);
-    std::array<RunPlayer, 2> players{RunPlayer(before), RunPlayer(after)};
+    std::vector<RunPlayer> players;
+    for (const Played& p : runs) players.emplace_back(*p.run);
     ProgressLine line(options, "making a small film", "nothing was written under " + output.string());
     std::size_t index = 0;
     analysis::show_film(
         measured.string(), view, frames,
         [&](const Image& image) {
           const double time = from + static_cast<double>(index++) * stretch.step;
-          std::array<Frame, 3> shown;
+          std::vector<Frame> shown(mills.size());
           for (std::size_t k = 0; k < runs.size(); ++k)
             shown[k + 1] = players[k].at(runs[k].run->time().front() + runs[k].step.b_at(time));
           sheet.set_picture(0, image);
-          writer.write(sheet.draw(shown, std::array<render::Moment, 3>{}, time - from));
+          writer.write(sheet.draw(shown, std::vector<render::Moment>(mills.size()), time - from));
         },
         line.callback());
     writer.finish();
     if (fs::file_size(output) <= kSmallSize) break;
   }
 
-  const bool by_lifters = runs[0].step.by_lifters && runs[1].step.by_lifters;
+  const bool by_lifters = std::all_of(runs.begin(), runs.end(), [](const Played& p) { return p.step.by_lifters; });
   std::string caption = fmt::format(
-      "What was measured, the model as it was, and with what was found. {}Slowed {:.2g} times. The balls’ colour is "
-      "their speed; no ball of one is a ball of another.",
+      "What was measured{} {}Slowed {:.2g} times. The balls’ colour is their speed; no ball of one is a ball of "
+      "another.",
+      after == nullptr ? " and the model." : ", the model as it was, and with what was found.",
       by_lifters ? "All begin with the lifters in the same place. " : "", style.slow);
   if (clockwise) caption += " The film is mirrored, as all that is measured in it.";
   return {output, caption};

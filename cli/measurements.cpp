@@ -64,6 +64,25 @@ void give_radii(std::vector<SeenFrame>& frames, const Config& config, const std:
         "sizes are lost");
 }
 
+double or_nothing(double error) { return std::isnan(error) ? 0 : error; }
+
+// What MILL.toml's [measurement] knows to be wrong with places and times.
+void put_right(std::vector<SeenFrame>& frames, const MeasurementErrors& wrong) {
+  const double longer = 1 + or_nothing(wrong.camera_scale), slower = 1 + or_nothing(wrong.frame_clock),
+               turned = radians(or_nothing(wrong.camera_rotation_deg));
+  if (longer == 1 && slower == 1 && turned == 0) return;
+  const double c = std::cos(turned) / longer, s = std::sin(turned) / longer;
+  for (SeenFrame& f : frames) {
+    f.time /= slower;
+    for (diagnose::Sighting& ball : f.balls) {
+      const double x = ball.x, y = ball.y;
+      ball.x = c * x + s * y;
+      ball.y = c * y - s * x;
+      ball.spin *= slower;
+    }
+  }
+}
+
 std::vector<SeenFrame> frames_of(const io::BallTracks& t) {
   std::vector<SeenFrame> frames;
   int of = -1;
@@ -163,11 +182,14 @@ void read_frames(Measurement& m, const fs::path& films, const CommonOptions& opt
     throw InputError(m.frames_file, fmt::format("has {} frames; give at least 3", m.frames.size()));
   unwrap(m.frames);
   give_radii(m.frames, m.config, e.name, notes);
+  put_right(m.frames, m.config.measurement);
   if (std::isnan(m.frames.front().mill_angle))
     notes.push_back(e.name +
                     ": no mill_angle_deg: the mill's own speed, its evenness and what turns with the drum are lost");
-  if (std::isnan(m.frames.front().balls.front().spin) && !m.is_film)
-    notes.push_back(e.name + ": no spin_rad_s: spin is lost");
+  const bool spins = std::any_of(m.frames.begin(), m.frames.end(), [](const SeenFrame& f) {
+    return std::any_of(f.balls.begin(), f.balls.end(), [](const auto& ball) { return !std::isnan(ball.spin); });
+  });
+  if (!spins && !m.is_film) notes.push_back(e.name + ": no spin_rad_s: spin is lost");
   const double seconds = m.frames.back().time - m.frames.front().time;
   m.revolutions = std::abs(diagnose::turning_speed(m.frames, m.config)) * seconds / (2 * kPi);
   if (m.revolutions < 1)
@@ -190,6 +212,9 @@ void read_torque(Measurement& m, std::vector<std::string>& notes) {
   }
   if (!std::isnan(e.torque.value)) m.torque = {e.torque.value / slices, e.torque.se / slices};
   if (!std::isnan(e.power.value)) m.torque = {e.power.value / (slices * speed), e.power.se / (slices * speed)};
+  const double offset = or_nothing(m.config.measurement.torque_offset_N_m) / slices;
+  m.torque.value -= offset;
+  for (diagnose::TorqueSample& sample : m.torque_series) sample.torque -= offset;
 }
 
 // Toe, shoulder and the like, where they are not given as numbers.
@@ -203,8 +228,11 @@ void fill_angles(Measurement& m) {
   }
   for (const ScalarDatum& d : kScalarData)
     for (const MotionQuantity& q : kMotionQuantities)
-      if (d.is_direction && q.name == std::string(d.name) && std::isnan((m.experiment.*d.measured).value))
+      if (d.is_direction && q.name == std::string(d.name) && std::isnan((m.experiment.*d.measured).value)) {
         m.experiment.*d.measured = m.motion.*q.of;
+        if (m.experiment.tracks.empty())  // those of tracks come from places that were put right
+          (m.experiment.*d.measured).value -= or_nothing(m.config.measurement.camera_rotation_deg);
+      }
 }
 
 Measurement read_one(const Experiment& experiment, const Config& mill, const fs::path& films,

@@ -10,7 +10,7 @@ int main(int argc, char** argv) {
   constexpr AddVerb kTrials = [](CLI::App& app) {
     app.add_subcommand("trials", "Blind data sets with a sealed key, and the score of verdicts on them");
   };
-  constexpr AddVerb kVerbs[] = {add_run,   add_simulate,  kRender,     add_analyse, add_compare, add_parameters,
-                                add_sweep, add_calibrate, add_effects, add_shell,   kTrials};
+  constexpr AddVerb kVerbs[] = {add_run,   add_simulate,  kRender,      add_analyse, add_compare, add_parameters,
+                                add_sweep, add_calibrate, add_diagnose, add_effects, add_shell,   kTrials};
   return run_program(argc, argv, kVerbs);
 }

@@ -9,14 +9,11 @@
 
 namespace tumble::cli {
 
-void simulate_to_file(const Config& config, const std::filesystem::path& output, bool resume,
-                      const CommonOptions& options) {
+RunResult write_run(const Config& config, const std::filesystem::path& output, bool resume, const Progress& progress) {
   std::optional<StoredCheckpoint> checkpoint;
   if (resume) checkpoint = io::read_checkpoint(output, config);
   const bool resumed = checkpoint.has_value();
   std::unique_ptr<io::RunWriter> writer;
-  ProgressLine line(options, "simulating",
-                    "the run so far is kept; go on with: tumble simulate ... -o " + output.string() + " --resume");
   sim::RunSink sink;
   sink.setup = [&](const RunSetup& setup) {
     writer =
@@ -25,9 +22,17 @@ void simulate_to_file(const Config& config, const std::filesystem::path& output,
   };
   sink.frame = [&](const Frame& frame) { writer->write(frame); };
   sink.checkpoint = [&](const Checkpoint& c) { writer->write(c); };
-  sink.progress = line.callback();
+  sink.progress = progress;
   const RunResult result = sim::simulate(config, sink, std::move(checkpoint));
   writer->finish(result);
+  return result;
+}
+
+void simulate_to_file(const Config& config, const std::filesystem::path& output, bool resume,
+                      const CommonOptions& options) {
+  ProgressLine line(options, "simulating",
+                    "the run so far is kept; go on with: tumble simulate ... -o " + output.string() + " --resume");
+  const RunResult result = write_run(config, output, resume, line.callback());
   if (!result.caveat.empty()) say(options, "note: " + result.caveat);
 }
 

@@ -12,6 +12,7 @@ void add_compare(CLI::App& app);
 void add_parameters(CLI::App& app);
 void add_sweep(CLI::App& app);
 void add_calibrate(CLI::App& app);
+void add_diagnose(CLI::App& app);
 void add_effects(CLI::App& app);
 void add_shell(CLI::App& app);
 

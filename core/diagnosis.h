@@ -29,6 +29,8 @@ struct DiagnosedExperiment {
   bool hold_out = false;
   double speed_fraction = kNotGiven, filling = kNotGiven;
   MillShape shape;  // drawn round the maps
+  // What makes its mill that of the model as it was with its uncertain keys refitted, as --set takes it.
+  std::vector<std::string> before = {};
 };
 
 struct FoundParameter {
@@ -99,6 +101,7 @@ struct TorqueCurve {  // torque over a lifter's passage or over time, measured a
   std::string experiment = {}, x_name = {}, x_unit = {};
   // [N m] of one slice.
   std::vector<double> x = {}, measured = {}, before = {}, before_se = {}, after = {}, after_se = {};
+  std::vector<double> measured_se = {};
 };
 
 struct NextExperiment {

@@ -13,7 +13,7 @@ namespace tumble::diagnose {
 namespace {
 
 // Raised whenever the same mill would give other numbers, or others than before: old libraries are then of no use.
-constexpr int kVersionOfSignatures = 2;
+constexpr int kVersionOfSignatures = 5;
 constexpr std::size_t kChunk = 8;  // runs of a file
 constexpr int kMostRetreats = 8;
 
@@ -102,9 +102,11 @@ std::size_t build_library(std::vector<Condition>& conditions, const std::vector<
       if (known) {
         if (!unpack(rows[k], layout, run)) run.error = "failed before";
       } else {
-        run = run_signature(mill.config, [&](double share) { report(own, (double(k) + share) / double(chunk.count)); });
+        run = run_signature(mill.config, condition.config,
+                            [&](double share) { report(own, (double(k) + share) / double(chunk.count)); });
         run.strength = mill.strength;
         fresh.push_back(pack(run));
+        if (run.error.empty()) unpack(fresh.back(), layout, run);  // as it will be read: the same verdict either way
       }
       run.condition = chunk.condition;
       run.uncertain = mill.uncertain;

@@ -9,11 +9,6 @@
 // What the exact checks are put together from: one function a subject, each with none, one or several checks.
 namespace tumble::diagnose {
 
-struct MovedBy {  // a suspect that moves a number
-  std::string suspect;
-  double per = kNotGiven;  // strength, in its parameter's units, for each unit that the number is off; NaN: not known
-};
-
 // `usual`, `odd`: what is said where the number is as expected, and where it is not; the numbers themselves come before
 // that.
 struct Saying {

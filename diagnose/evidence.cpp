@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 #include "core/config.h"
 
@@ -12,10 +13,14 @@ namespace {
 constexpr double kUsualStrength = 0.7;  // of one who is guilty: standard deviation of the strength
 // Of observers that nobody suspects: no measurement is exact.
 constexpr double kUsualError = 0.05;  // [full strengths]: 0.1 % of scale and clock, 0.1 degrees, 0.2 % of torque
+constexpr double kFarthest = 3;       // standard deviations of what is uncertain; the library goes to 2.3
+constexpr double kClueFreedom = 10;   // of Student's t: no check is so exact that it may overrule all others
 constexpr int kMostSteps = 40;
 
 struct Problem {
   std::span<const Measured> measured;
+  std::span<const Clue> clues;
+  Eigen::Index keys = 0;
   std::vector<int> free;
   Eigen::VectorXd prior_sd, low, high;  // of the free ones
   Eigen::Index size = 0;                // of all places
@@ -54,12 +59,27 @@ State look(const Problem& problem, const Eigen::VectorXd& x) {
     const double chi2 = rest.squaredNorm() / variance;
     s.chi2 += chi2;
     s.chi2_of.push_back(chi2);
-    // The scatter is known from so many runs only: Student's t, which for many becomes the normal distribution.
-    const double freedom = m.response->freedom(), numbers = double(m.response->numbers());
-    s.misfit += (freedom + 1) * std::log1p(chi2 / freedom) + numbers * std::log(variance);
-    const double weight = (freedom + 1) / (freedom + chi2) / variance;
+    // A multivariate Student's t with the scatter's covariance; for many degrees of freedom the normal distribution.
+    const double freedom = m.response->tail_freedom(), numbers = double(m.response->numbers());
+    s.misfit += (freedom + numbers) * std::log1p(chi2 / (freedom - 2)) + numbers * std::log(variance);
+    const double weight = (freedom + numbers) / (freedom - 2 + chi2) / variance;
     s.information += weight * slope.transpose() * slope;
     s.gradient -= weight * slope.transpose() * rest;
+  }
+  const Eigen::VectorXd places = problem.all(x);
+  for (const Clue& clue : problem.clues) {
+    double rest = clue.value / clue.se;
+    Eigen::VectorXd slope = Eigen::VectorXd::Zero(n);
+    for (const auto& [suspect, along] : clue.slopes) {
+      const auto place = static_cast<int>(problem.keys) + suspect;
+      rest -= along * places[place] / clue.se;
+      for (Eigen::Index i = 0; i < n; ++i)
+        if (problem.free[static_cast<std::size_t>(i)] == place) slope[i] = along / clue.se;
+    }
+    s.misfit += (kClueFreedom + 1) * std::log1p(rest * rest / kClueFreedom);
+    const double weight = (kClueFreedom + 1) / (kClueFreedom + rest * rest);
+    s.information += weight * slope * slope.transpose();
+    s.gradient -= weight * slope * rest;
   }
   return s;
 }
@@ -97,9 +117,10 @@ double Explanation::se(int place) const {
   return kNotGiven;
 }
 
-Explanation explain(std::span<const Measured> measured, std::span<const Suspect> suspects, std::vector<int> guilty) {
+Explanation explain(std::span<const Measured> measured, std::span<const Suspect> suspects, std::vector<int> guilty,
+                    std::span<const Clue> clues) {
   const int keys = static_cast<int>(measured.front().response->uncertain());
-  Problem problem{measured, {}, {}, {}, {}, keys + static_cast<Eigen::Index>(suspects.size()), {}};
+  Problem problem{measured, clues, keys, {}, {}, {}, {}, keys + static_cast<Eigen::Index>(suspects.size()), {}};
   std::vector<double> sd, low, high;
   const auto add = [&](int place, double prior, double least, double most) {
     problem.free.push_back(place);
@@ -107,7 +128,7 @@ Explanation explain(std::span<const Measured> measured, std::span<const Suspect>
     low.push_back(least);
     high.push_back(most);
   };
-  for (int k = 0; k < keys; ++k) add(k, 1, -4, 4);
+  for (int k = 0; k < keys; ++k) add(k, 1, -kFarthest, kFarthest);
   std::vector<std::size_t> accused;  // where the guilty stand among the free
   for (int s = 0; s < static_cast<int>(suspects.size()); ++s) {
     const bool is_guilty = std::find(guilty.begin(), guilty.end(), s) != guilty.end();
@@ -153,6 +174,7 @@ Explanation explain(std::span<const Measured> measured, std::span<const Suspect>
       best.log_evidence += std::log(2 * normal_share_below(x[i] / std::sqrt(best.covariance(i, i))));
     }
   }
+  if (std::isinf(least)) throw std::logic_error("an explanation of numbers that are none");
   best.suspects = std::move(guilty);
   best.free = problem.free;
   for (const Measured& m : measured) best.numbers += double(m.response->numbers());

@@ -1,6 +1,7 @@
 #pragma once
 #include <Eigen/Core>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "diagnose/response.h"
@@ -17,6 +18,11 @@ struct Measured {  // in one condition
   double shift_variance = 0;
 };
 
+struct Clue {  // what an exact check says, without any simulation: a weighted sum of strengths
+  std::vector<std::pair<int, double>> slopes;  // of suspects
+  double value = 0, se = 0;
+};
+
 struct Explanation {
   std::vector<int> suspects;   // none: nothing is hidden
   Eigen::VectorXd places;      // the likeliest: keys, then strengths of all suspects
@@ -30,6 +36,7 @@ struct Explanation {
 };
 
 // `suspects`: the mill's, for ranges and kinds. Local minima: tried from both sides and from weak and strong.
-Explanation explain(std::span<const Measured> measured, std::span<const Suspect> suspects, std::vector<int> guilty);
+Explanation explain(std::span<const Measured> measured, std::span<const Suspect> suspects, std::vector<int> guilty,
+                    std::span<const Clue> clues = {});
 
 }  // namespace tumble::diagnose

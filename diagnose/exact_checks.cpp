@@ -30,7 +30,7 @@ ExactCheck make_check(const Measurement& m, const std::string& name, double foun
     c.strength = (found - expected) * moved_by.front().per;
     c.strength_se = se * std::abs(moved_by.front().per);
   }
-  for (const MovedBy& by : moved_by) c.names.push_back(by.suspect);
+  c.moved_by = moved_by;
   for (const Suspect& s : moved_by.empty() ? std::vector<Suspect>{} : suspects_of(m.config)) {
     const auto by =
         std::find_if(moved_by.begin(), moved_by.end(), [&](const MovedBy& b) { return b.suspect == s.name; });

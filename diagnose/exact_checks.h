@@ -10,6 +10,11 @@
 // docs/measurements.md.
 namespace tumble::diagnose {
 
+struct MovedBy {  // a suspect that moves a number
+  std::string suspect;
+  double per = kNotGiven;  // strength, in its parameter's units, for each unit that the number is off; NaN: not known
+};
+
 struct ExactCheck {
   std::string name;        // "flight_gravity"
   std::string experiment;  // its name
@@ -17,9 +22,9 @@ struct ExactCheck {
   double z = 0;  // (found - expected) / se: a standard normal number where nothing is hidden
   std::string unit;
   std::string says;                   // in one sentence
-  std::vector<std::string> names;     // the suspects that move this number, the likeliest first
+  std::vector<MovedBy> moved_by;      // the likeliest first
   std::vector<std::string> excludes;  // the suspects that it rules out, alone and at full strength
-  // Of names.front(), in its parameter's units: what the whole of the difference would come to.
+  // Of moved_by.front(), in its parameter's units: what the whole of the difference would come to.
   double strength = kNotGiven, strength_se = kNotGiven;
 
   bool is_clear() const { return z > kClear || z < -kClear; }  // so far off that it is no chance

@@ -70,31 +70,35 @@ Filter solve(const Sums& s, const Eigen::VectorXd& noise2, const std::vector<dou
 
 }  // namespace
 
+// A cubic in the span's logarithm through what the four spans show.
 std::vector<double> observed_at(const Sight& sight, double span) {
-  std::size_t next = 1;
-  while (next + 1 < kSpans.size() && kSpans[next] < span) ++next;
-  const double share =
-      std::isnan(span) ? 0 : std::clamp((span - kSpans[next - 1]) / (kSpans[next] - kSpans[next - 1]), 0.0, 1.0);
-  std::vector<double> seen = sight.by_span[next - 1].value;
-  for (std::size_t i = 0; i < seen.size(); ++i) seen[i] += share * (sight.by_span[next].value[i] - seen[i]);
+  static_assert(kSpans.size() == 4 && kSpans[1] == 2 * kSpans[0] && kSpans[3] == 2 * kSpans[2]);
+  const double x = std::isnan(span) ? 0 : std::clamp(std::log2(span / kSpans.front()), 0.0, 3.0);
+  const std::array shares{-(x - 1) * (x - 2) * (x - 3) / 6, x * (x - 2) * (x - 3) / 2, -x * (x - 1) * (x - 3) / 2,
+                          x * (x - 1) * (x - 2) / 6};
+  std::vector<double> seen(sight.by_span.front().value.size(), 0);
+  for (std::size_t k = 0; k < shares.size(); ++k)
+    for (std::size_t i = 0; i < seen.size(); ++i) seen[i] += shares[k] * sight.by_span[k].value[i];
   return seen;
 }
 
 Features::Features(const std::vector<const SignatureRun*>& runs, const std::vector<Suspect>& suspects,
-                   const std::vector<std::size_t>& chosen, const std::vector<double>& noise, double span) {
-  const auto n = static_cast<Eigen::Index>(runs.size());
+                   const std::vector<std::size_t>& chosen, const std::vector<double>& noise, double span,
+                   double torque_unit) {
   std::vector<std::vector<double>> seen;
   for (const SignatureRun* run : runs) seen.push_back(observed_at(run->seen, span));
   std::vector<double> middle, scale, noise_of;
   for (std::size_t i = 0; i < chosen.size(); ++i) {
-    double sum = 0, square = 0, there = 0;
+    double sum = 0, square = 0, there = 0, told = 0;
     for (const auto& s : seen) {
+      if (std::isnan(s[chosen[i]])) continue;
+      told += 1;
       sum += s[chosen[i]];
       square += s[chosen[i]] * s[chosen[i]];
       there += std::abs(s[chosen[i]]) > 1e-12;
     }
-    const double mean = sum / double(n), variance = square / double(n) - mean * mean;
-    if (!(there >= kMostlyThere * double(n)) || !(variance > 1e-18 * std::max(1.0, mean * mean))) continue;
+    const double mean = sum / told, variance = square / told - mean * mean;
+    if (!(there >= kMostlyThere * double(runs.size())) || !(variance > 1e-18 * std::max(1.0, mean * mean))) continue;
     chosen_.push_back(chosen[i]);
     middle.push_back(mean);
     scale.push_back(std::sqrt(variance));
@@ -108,7 +112,6 @@ Features::Features(const std::vector<const SignatureRun*>& runs, const std::vect
   const auto keys = static_cast<Eigen::Index>(runs.front()->uncertain.size());
   const Eigen::Index q = keys + static_cast<Eigen::Index>(suspects.size());
   std::vector<Sums> folds(kFolds, Sums(m, q));
-  const double torque = middle_.size() > 0 && chosen_.front() == 0 ? middle_[0] : 0;
   for (std::size_t r = 0; r < runs.size(); ++r) {
     const SignatureRun& run = *runs[r];
     Eigen::VectorXd target = Eigen::VectorXd::Zero(q);
@@ -123,7 +126,7 @@ Features::Features(const std::vector<const SignatureRun*>& runs, const std::vect
         const double sign = side == 0 ? -1 : 1;
         if (suspects[s].torque_offset != 0) {
           std::vector<double> shifted = seen[r];
-          const double offset = sign * kTorqueError * suspects[s].torque_offset * torque;
+          const double offset = sign * kTorqueError * suspects[s].torque_offset * torque_unit;
           shifted[0] += offset;
           shifted[1] += offset;
           wrong[keys + static_cast<Eigen::Index>(s)] += sign * kTorqueError;
@@ -211,7 +214,8 @@ void Features::append_principal(const Eigen::MatrixXd& covariance) {
 Eigen::VectorXd Features::scaled(const std::vector<double>& observation) const {
   Eigen::VectorXd y(static_cast<Eigen::Index>(chosen_.size()));
   for (std::size_t i = 0; i < chosen_.size(); ++i) y[static_cast<Eigen::Index>(i)] = observation[chosen_[i]];
-  return (y - middle_).cwiseQuotient(scale_);
+  // What a run happens not to tell is taken as it mostly is.
+  return (y - middle_).cwiseQuotient(scale_).unaryExpr([](double v) { return std::isnan(v) ? 0.0 : v; });
 }
 
 Eigen::VectorXd Features::of(const std::vector<double>& observation) const {

@@ -18,8 +18,9 @@ class Features {
  public:
   // `runs`: of this condition, those that failed left out. `chosen`: which numbers of an observation there are; those
   // that the library cannot tell of are dropped. `noise`: how uncertain each was measured, beside chance.
+  // `torque_unit`: of offsets of the torque [N m of one slice].
   Features(const std::vector<const SignatureRun*>& runs, const std::vector<Suspect>& suspects,
-           const std::vector<std::size_t>& chosen, const std::vector<double>& noise, double span);
+           const std::vector<std::size_t>& chosen, const std::vector<double>& noise, double span, double torque_unit);
 
   Eigen::Index count() const { return filters_.cols(); }
   const std::vector<std::size_t>& chosen() const { return chosen_; }

@@ -62,8 +62,8 @@ double mean_mass(const Config& config) {
 }
 
 struct Model {
-  explicit Model(const Watched& w) : watched(w), laws(*w.model) {}
-  Watched watched;
+  explicit Model(const SeenExperiment& e) : seen(e), laws(*e.model) {}
+  SeenExperiment seen;
   sim::ConfigLaws laws;
 };
 
@@ -79,8 +79,8 @@ Rows rows_of_flights(const std::vector<std::unique_ptr<Model>>& models) {
                 {"u / |u|", "m/s2"}, {"z x v", "1/s"}, {"spin z x v", ""}, {"r", "1/s2"},    {"z x r", "1/s2"}};
   bool spins = true;
   for (const auto& m : models) {
-    const double turn = m->laws.mill_speed(), usual = mean_radius(m->watched.model->charge.balls);
-    for (const FlightWindow& w : m->watched.events->flights()) {
+    const double turn = m->laws.mill_speed(), usual = mean_radius(m->seen.model->charge.balls);
+    for (const FlightWindow& w : m->seen.events->flights()) {
       const double small = usual / w.radius;
       spins &= std::isfinite(w.spin);
       // Both components of every term, then of the model's own acceleration.
@@ -155,8 +155,8 @@ Rows rows_of_impacts(const std::vector<std::unique_ptr<Model>>& models, bool res
     data.terms = {{"1", ""}, {"slip", "s/m"}, {"slip^2", "s2/m2"}, {"size", ""}, {"wall", ""}};
   bool sizes = false, at_wall = false, between = false;
   for (const auto& m : models) {
-    const Config& config = *m->watched.model;
-    const std::vector<SeenImpact> impacts = m->watched.events->impacts();
+    const Config& config = *m->seen.model;
+    const std::vector<SeenImpact> impacts = m->seen.events->impacts();
     std::vector<LawSample> samples;
     for (const bool wall : {false, true}) {
       const Law law = restitution ? (wall ? Law::kWallRestitution : Law::kBallRestitution)
@@ -195,7 +195,7 @@ Rows rows_of_impacts(const std::vector<std::unique_ptr<Model>>& models, bool res
 
 std::vector<std::string> sets_of_impacts(const Rows& data, const std::vector<SparseTerm>& found, bool restitution,
                                          const Model& model) {
-  const Config& config = *model.watched.model;
+  const Config& config = *model.seen.model;
   const std::vector<double> speeds = speeds_up_to((restitution ? 1 : 2) * std::sqrt(kGravity * config.mill.diameter));
   const auto table = [&](bool wall) {
     std::vector<double> values;
@@ -240,9 +240,9 @@ void report(const char* of, const Rows& data, const std::vector<SparseTerm>& fou
 
 }  // namespace
 
-std::vector<FoundLaw> found_laws(std::span<const Watched> experiments) {
+std::vector<FoundLaw> found_laws(std::span<const SeenExperiment> experiments) {
   std::vector<std::unique_ptr<Model>> models;
-  for (const Watched& w : experiments) models.push_back(std::make_unique<Model>(w));
+  for (const SeenExperiment& e : experiments) models.push_back(std::make_unique<Model>(e));
   std::vector<FoundLaw> all;
   if (models.empty()) return all;
   const Rows flights = rows_of_flights(models);

@@ -22,11 +22,11 @@ struct FoundLaw {
   std::vector<std::string> sets;  // of MILL.toml, for all terms found of this law; empty where no table says it
 };
 
-struct Watched {  // one experiment
+struct SeenExperiment {
   const ContactEvents* events = nullptr;
   const Config* model = nullptr;  // complete; what the sets are added to
 };
 
-std::vector<FoundLaw> found_laws(std::span<const Watched> experiments);
+std::vector<FoundLaw> found_laws(std::span<const SeenExperiment> experiments);
 
 }  // namespace tumble::diagnose

@@ -12,6 +12,7 @@
 #include "core/motion_quantities.h"
 #include "core/random.h"
 #include "core/units.h"
+#include "diagnose/contact_laws.h"
 #include "diagnose/design.h"
 #include "diagnose/free_flight.h"
 #include "sim/simulator.h"
@@ -28,8 +29,12 @@ constexpr std::size_t kPlain = 12, kOfSuspect = 5, kOfContact = 10;  // runs of 
 // All that is summed up of a run.
 class Watcher {
  public:
-  Watcher(const RunSetup& setup, Watched watched)
-      : setup_(setup), shape_(make_mill_shape(setup.config)), layout_(shape_.lifter_count), measurer_(setup) {
+  Watcher(const RunSetup& setup, const Config& condition, Watched watched)
+      : setup_(setup),
+        shape_(make_mill_shape(setup.config)),
+        layout_(shape_.lifter_count),
+        measurer_(setup),
+        laws_(condition) {
     double mean = 0;
     for (const double r : setup.balls.radius) mean += r / double(setup.balls.size());
     all_.push_back({});
@@ -48,6 +53,8 @@ class Watcher {
     for (std::size_t i = 0; i < balls.size(); ++i)
       balls[i] = {static_cast<int>(i), frame.x[i], frame.y[i], setup_.balls.radius[i], frame.spin[i]};
     flights_->add(frame.time, balls);
+    laws_.add(frame.time, frame.mill_angle, balls);
+    for (std::size_t i = 0; i < balls.size(); ++i) height_ += setup_.balls.mass[i] * frame.y[i];
     maps_->add(frame.time, frame.mill_angle, std::move(balls));
     angle_ = frame.mill_angle - (frames_ == 0 ? (first_ = frame.mill_angle) : first_);
     ++frames_;
@@ -63,15 +70,24 @@ class Watcher {
 
  private:
   std::vector<Sight> finish_sights(const ChargeMotion& motion) {
+    double mass = 0;
+    for (const double m : setup_.balls.mass) mass += m;
+    const double weight = slice_mass(setup_.config, class_counts(setup_.config)) * kGravity;
+    const double across = weight * height_ / (mass * double(frames_));
     std::vector<Sight> sights;
     for (std::size_t o = 0; o < all_.size(); ++o) {
       Sight sight;
+      const LawNumbers laws = laws_.numbers(all_[o]);
       for (std::size_t s = 0; s < kSpans.size(); ++s) {
         Observation& seen = sight.by_span[s];
         maps_->finish(o * kSpans.size() + s, seen);
         flights_->finish(layout_, all_[o], seen);
         seen.value[layout_.first(Observable::kTorque)] = motion.torque.value;
-        seen.value[layout_.first(Observable::kClosure)] = motion.torque.value - motion.torque_closure.value;
+        const double held = (1 + all_[o].scale) * (std::cos(all_[o].rotation) * motion.torque_closure.value -
+                                                   std::sin(all_[o].rotation) * across);
+        seen.value[layout_.first(Observable::kClosure)] = motion.torque.value - held;
+        std::copy(laws.value.begin(), laws.value.end(),
+                  seen.value.begin() + static_cast<std::ptrdiff_t>(layout_.first(Observable::kLaws)));
         const double turned = all_[o].rotation * 180 / kPi;
         for (std::size_t k = 2; k < kScalarData.size(); ++k)
           seen.value[layout_.first(Observable::kAngles) + k - 2] = angle_of(motion, kScalarData[k].name) + turned;
@@ -91,10 +107,11 @@ class Watcher {
   MillShape shape_;
   ObservationLayout layout_;
   analysis::FrameMeasurer measurer_;
+  ContactLaws laws_;
   std::vector<Observer> all_;    // first the one who does not err
   std::optional<MapSums> maps_;  // views by observer, then span
   std::optional<FreeFlights> flights_;
-  double first_ = 0, angle_ = 0;
+  double first_ = 0, angle_ = 0, height_ = 0;  // height_: sums of mass times y
   std::size_t frames_ = 0;
 };
 
@@ -111,13 +128,13 @@ std::array<Observer, kObservers> observers() {
   return list;
 }
 
-SignatureRun run_signature(const Config& wanted, const Progress& progress, Watched watched) {
+SignatureRun run_signature(const Config& wanted, const Config& condition, const Progress& progress, Watched watched) {
   SignatureRun run;
   Config config = bare(wanted);
   config.run.seed = wanted.run.seed;
   std::unique_ptr<Watcher> watcher;
   sim::RunSink sink;
-  sink.setup = [&](const RunSetup& setup) { watcher = std::make_unique<Watcher>(setup, watched); };
+  sink.setup = [&](const RunSetup& setup) { watcher = std::make_unique<Watcher>(setup, condition, watched); };
   sink.frame = [&](const Frame& frame) { watcher->add(frame); };
   sink.progress = progress;
   try {

@@ -39,7 +39,9 @@ struct SignatureRun {
 
 // One run, looked at while it goes on; by all observers, or by the one who does not err (a fifth less time).
 enum class Watched { kAll, kRight };
-SignatureRun run_signature(const Config& config, const Progress& progress = {}, Watched watched = Watched::kAll);
+// `condition`: the mill as it was said to be, by which laws of single balls are read.
+SignatureRun run_signature(const Config& config, const Config& condition, const Progress& progress = {},
+                           Watched watched = Watched::kAll);
 
 struct SignatureAsked {
   std::vector<double> uncertain;

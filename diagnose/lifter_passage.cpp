@@ -1,3 +1,5 @@
+#include "diagnose/lifter_passage.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -5,8 +7,6 @@
 #include "core/angle.h"
 #include "diagnose/sampled.h"
 
-// Torque over a lifter's passage: the mean over all passages at the same place of the lifters, which are the only clock
-// that two runs have in common. No frame is compared with a frame.
 namespace tumble::diagnose {
 namespace {
 
@@ -69,23 +69,34 @@ std::vector<Estimate> means_of(const Passages& p, int places) {
 
 }  // namespace
 
+OverPassage torque_over_passage(std::span<const ChargeMotion* const> motions) {
+  std::vector<Passages> all;
+  int places = kMostPlaces;
+  for (const ChargeMotion* m : motions) {
+    if (m->lifter_count != motions.front()->lifter_count) return {};
+    all.push_back(passages_of(*m));
+    places = std::min(places, static_cast<int>(all.back().per_passage));
+  }
+  OverPassage over;
+  if (all.empty() || places < kFewestPlaces) return over;
+  for (int k = 0; k < places; ++k) over.past_deg.push_back((k + 0.5) * all.front().pitch_deg / places);
+  for (const Passages& p : all) over.torque.push_back(means_of(p, places));
+  return over;
+}
+
 std::vector<SampledDifference> compare_lifter_passages(const ChargeMotion& a, const ChargeMotion& b) {
-  if (a.lifter_count != b.lifter_count) return {};
-  const Passages pa = passages_of(a), pb = passages_of(b);
-  const int places = std::min(kMostPlaces, static_cast<int>(std::min(pa.per_passage, pb.per_passage)));
-  if (places < kFewestPlaces) return {};
+  OverPassage over = torque_over_passage(std::array{&a, &b});
+  if (over.past_deg.empty()) return {};
   SampledDifference d{.name = "torque_over_lifter_passage",
                       .unit = "N m",
                       .x_name = "a lifter's angle past 3 o'clock",
-                      .x_unit = "deg"};
-  const std::vector<Estimate> ma = means_of(pa, places), mb = means_of(pb, places);
-  for (int k = 0; k < places; ++k) {
-    const auto i = static_cast<std::size_t>(k);
-    d.x.push_back((k + 0.5) * pa.pitch_deg / places);
-    d.a.push_back(ma[i].value);
-    d.a_se.push_back(ma[i].se);
-    d.b.push_back(mb[i].value);
-    d.b_se.push_back(mb[i].se);
+                      .x_unit = "deg",
+                      .x = std::move(over.past_deg)};
+  for (std::size_t k = 0; k < d.x.size(); ++k) {
+    d.a.push_back(over.torque[0][k].value);
+    d.a_se.push_back(over.torque[0][k].se);
+    d.b.push_back(over.torque[1][k].value);
+    d.b_se.push_back(over.torque[1][k].se);
   }
   judge(d, {});
   return {d};

@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "core/experiments.h"
 #include "core/units.h"
+#include "diagnose/contact_laws.h"
 
 namespace tumble::diagnose {
 namespace {
@@ -15,6 +17,9 @@ constexpr int kUsualPockets = 18;
 constexpr std::size_t kAngleCount = 6, kFlightCount = 4;
 constexpr double kReach = 1.04;  // [R]: cells up to here may hold a ball's share
 
+// Balls rest on the lifters' tips, just where pockets end: within so many radii a ball counts in part, so that no noise
+// of its place makes it count or not.
+constexpr double kRamp = 1.5;
 constexpr double kOnFrame = 1e-6;  // [frames]: nearer than that, a moment is the frame's own
 
 // Finds balls by number in a list that is sorted by it, asked for in that order.
@@ -52,9 +57,11 @@ const char* name_of(Observable observable) {
     case Observable::kPockets:
       return "pockets";
     case Observable::kFlight:
+      return "flight";
+    case Observable::kLaws:
       break;
   }
-  return "flight";
+  return "laws";
 }
 
 ObservationLayout::ObservationLayout(int lifter_count) : pockets(lifter_count > 0 ? lifter_count : kUsualPockets) {
@@ -84,9 +91,11 @@ std::size_t ObservationLayout::count(Observable observable) const {
     case Observable::kPockets:
       return 2 * static_cast<std::size_t>(pockets);
     case Observable::kFlight:
+      return kFlightCount;
+    case Observable::kLaws:
       break;
   }
-  return kFlightCount;
+  return kLawNumbers;
 }
 
 std::size_t ObservationLayout::first(Observable observable) const {
@@ -126,6 +135,8 @@ std::string ObservationLayout::region(std::size_t i) const {
       return fmt::format("{} lifter {}", k < count(o) / 2 ? "balls before" : "slip before", k % (count(o) / 2));
     case Observable::kFlight:
       return std::array{"x", "y", "x by velocity", "y by velocity"}[k];
+    case Observable::kLaws:
+      return name_of_law_number(k);
     default:
       return "mill";
   }
@@ -141,7 +152,11 @@ std::vector<double> turned_on(const ObservationLayout& layout, std::vector<doubl
 
 MapSums::MapSums(const ObservationLayout& layout, double mill_radius, double tip_radius, double mean_radius,
                  std::vector<View> views, std::size_t stride)
-    : layout_(&layout), radius_(mill_radius), ring_(tip_radius - mean_radius), stride_(stride) {
+    : layout_(&layout),
+      radius_(mill_radius),
+      ring_(tip_radius - mean_radius),
+      ramp_(kRamp * mean_radius),
+      stride_(stride) {
   for (const View& v : views) {
     const double longer = 1 + v.observer.scale, reach = v.span / (1 + v.observer.clock);
     views_.push_back({v, std::cos(v.observer.rotation) * longer, std::sin(v.observer.rotation) * longer, reach,
@@ -247,12 +262,13 @@ void MapSums::deposit(Sums& sums, const Seen& at) {
       if (is_told) spin[near[n]] += share * turns;
     }
     const double r = std::sqrt(x * x + y * y);
-    if (r < ring_) continue;
+    const double within = std::clamp((r - ring_) / ramp_ + 0.5, 0.0, 1.0);
+    if (within == 0) continue;
     const double turn = (std::atan2(y, x) - at.mill_angle) / (2 * kPi) * double(pocket_count);
     const double rounds = std::floor(std::floor(turn) / double(pocket_count));
     const auto pocket = static_cast<std::size_t>(std::floor(turn) - rounds * double(pocket_count));
-    pockets[pocket] += area;
-    pockets[pocket_count + pocket] += area * ((x * vy - y * vx) / r - mill_speed * r);
+    pockets[pocket] += area * within;
+    pockets[pocket_count + pocket] += area * within * ((x * vy - y * vx) / r - mill_speed * r);
   }
 }
 
@@ -260,10 +276,12 @@ void MapSums::finish(std::size_t view, Observation& into) const {
   const Sums& sums = views_[view];
   into.value.resize(layout_->size(), kNotGiven);
   into.noise.resize(layout_->size(), 0);
-  if (sums.frames == 0) return;
+  const double* const occupancy = sums.values.data() + layout_->first(Observable::kOccupancy);
+  const double charge = std::accumulate(occupancy, occupancy + layout_->count(Observable::kOccupancy), 0.0);
+  if (!(charge > 0)) return;
   for (const Observable o : {Observable::kOccupancy, Observable::kMomentum, Observable::kAgitation, Observable::kSpin,
                              Observable::kPockets}) {
-    double per = 1 / double(sums.frames);
+    double per = 1 / charge;
     // Where only some balls are told of, they stand for all.
     const std::size_t told = o == Observable::kSpin ? sums.spins : sums.squares;
     if (o == Observable::kSpin || o == Observable::kAgitation)

@@ -12,10 +12,21 @@
 namespace tumble::diagnose {
 
 // Kinds of observables, in the order in which they stand in an Observation.
-enum class Observable { kTorque, kClosure, kAngles, kOccupancy, kMomentum, kAgitation, kSpin, kPockets, kFlight };
-inline constexpr std::array kObservables{Observable::kTorque,    Observable::kClosure,  Observable::kAngles,
-                                         Observable::kOccupancy, Observable::kMomentum, Observable::kAgitation,
-                                         Observable::kSpin,      Observable::kPockets,  Observable::kFlight};
+enum class Observable {
+  kTorque,
+  kClosure,
+  kAngles,
+  kOccupancy,
+  kMomentum,
+  kAgitation,
+  kSpin,
+  kPockets,
+  kFlight,
+  kLaws
+};
+inline constexpr std::array kObservables{
+    Observable::kTorque,    Observable::kClosure, Observable::kAngles,  Observable::kOccupancy, Observable::kMomentum,
+    Observable::kAgitation, Observable::kSpin,    Observable::kPockets, Observable::kFlight,    Observable::kLaws};
 const char* name_of(Observable observable);  // "torque"
 
 inline constexpr int kCells = 12;  // of the lab-fixed maps, along a diameter
@@ -42,11 +53,12 @@ struct ObservationLayout {
 // The same numbers, had the drum been turned on by so many lifters before.
 std::vector<double> turned_on(const ObservationLayout& layout, std::vector<double> numbers, int lifters);
 
-// Torque [N m of one slice]; torque less M g x_com [N m]; the six toes and shoulders [deg]; area of balls per cell
-// [cell areas]; the same times velocity x, then y [m/s], times the velocity's square [m2/s2], and times spin [rad/s];
-// area of balls in each drum-fixed
-// pocket [pocket areas], then times their speed against the drum along the shell [m/s]; acceleration of balls in free
-// flight [m/s2]: x, y, and their slopes on velocity. NaN where unknown.
+// Torque [N m of one slice]; torque less M g x_com and dL/dt [N m]; the six toes and shoulders [deg]; each cell's share
+// of the charge's area; the same times velocity x, then y [m/s], times the velocity's square [m2/s2], and times spin
+// [rad/s]; each drum-fixed pocket's share, then times the balls' speed against the drum along the shell [m/s];
+// acceleration of balls in free flight [m/s2]: x, y, and their slopes on velocity; laws of single balls
+// (contact_laws.h). NaN where unknown. Shares, so that balls which were not seen now and then are no smaller charge:
+// how many there are is told by an exact check.
 struct Observation {
   std::vector<double> value;
   std::vector<double> noise;  // standard error by the way it was measured, beside what chance does to the motion itself
@@ -107,7 +119,7 @@ class MapSums {
   void deposit(Sums& sums, const Seen& at);
 
   const ObservationLayout* layout_;
-  double radius_, ring_, longest_ = 0;
+  double radius_, ring_, ramp_, longest_ = 0;
   std::vector<Sums> views_;
   std::deque<Seen> window_;
   std::deque<Moment> moments_;  // of the frame that is looked at

@@ -5,16 +5,30 @@
 #include "core/mill_shape.h"
 #include "core/quantile.h"
 #include "core/units.h"
+#include "diagnose/contact_laws.h"
 #include "diagnose/free_flight.h"
 #include "diagnose/seen_charge.h"
+#include "diagnose/tracking_noise.h"
 
 namespace tumble::diagnose {
 namespace {
 
 constexpr double kShortestSpan = 0.004;  // [s]
+constexpr double kOfAnEnd = 4;           // samples
 
-// Weight of the charge times the place of its centre of mass, as the observer has it [N m of one slice].
-double weight_couple(const Measurement& m, const Observer& observer) {
+// The first, or last, of a series that is known: a mean of a few.
+double end_of(const std::vector<double>& series, bool last) {
+  double sum = 0, known = 0;
+  for (std::size_t i = 0; i < series.size() && known < kOfAnEnd; ++i) {
+    const double v = series[last ? series.size() - 1 - i : i];
+    if (!std::isnan(v)) sum += v, ++known;
+  }
+  return sum / known;
+}
+
+// Weight of the charge times the place of its centre of mass, as the observer has it, and what the charge gains in
+// angular momentum besides [N m of one slice].
+double held_by_torque(const Measurement& m, const Observer& observer) {
   const SeenCharge charge = see_charge(m);
   const double weight = slice_mass(m.config, class_counts(m.config)) * kGravity;
   double moment = 0, height = 0;
@@ -22,7 +36,10 @@ double weight_couple(const Measurement& m, const Observer& observer) {
     moment += charge.moment[f] / double(charge.time.size());
     height += charge.height[f] / double(charge.time.size());
   }
-  return (1 + observer.scale) * (std::cos(observer.rotation) * moment - std::sin(observer.rotation) * weight * height);
+  const double gained = (end_of(charge.angular_momentum, true) - end_of(charge.angular_momentum, false)) /
+                        (charge.time.back() - charge.time.front());
+  return (1 + observer.scale) * (std::cos(observer.rotation) * moment - std::sin(observer.rotation) * weight * height) +
+         (std::isfinite(gained) ? gained : 0);
 }
 
 }  // namespace
@@ -51,25 +68,45 @@ Observation observe(const Measurement& m, const ObservationLayout& layout, doubl
       mean += counts[k] * m.config.charge.balls[k].radius;
       balls += counts[k];
     }
-    MapSums maps(layout, shape.radius, shape.tip_radius, mean / balls, {{span, observer}});
+    const auto look_at = [&](const std::vector<SeenFrame>& frames) {
+      MapSums maps(layout, shape.radius, shape.tip_radius, mean / balls, {{span, observer}});
+      for (const SeenFrame& frame : frames) maps.add(frame.time, frame.mill_angle, frame.balls);
+      Observation maps_alone;
+      maps.finish(0, maps_alone);
+      return maps_alone;
+    };
     FreeFlights flights(shape.tip_radius);
+    ContactLaws laws(m.config);
     for (const SeenFrame& frame : m.frames) {
-      maps.add(frame.time, frame.mill_angle, frame.balls);
       flights.add(frame.time, frame.balls);
+      laws.add(frame.time, frame.mill_angle, frame.balls);
     }
-    maps.finish(0, seen);
+    const Observation maps = look_at(m.frames);
+    for (std::size_t i = layout.first(Observable::kOccupancy); i < layout.first(Observable::kFlight); ++i)
+      seen.value[i] = maps.value[i];
+    // Noise of tracking blurs the maps: as much more of it blurs them as much again (SIMEX: Cook & Stefanski 1994).
+    if (const double noise = noise_of_places(m.frames); noise > 0) {
+      const Observation blurred = look_at(noisier(m.frames, noise));
+      for (std::size_t i = layout.first(Observable::kOccupancy); i < layout.first(Observable::kFlight); ++i)
+        seen.value[i] -= blurred.value[i] - maps.value[i];
+    }
     flights.finish(layout, observer, seen);
+    const LawNumbers told = laws.numbers(observer);
+    const auto first = static_cast<std::ptrdiff_t>(layout.first(Observable::kLaws));
+    std::copy(told.value.begin(), told.value.end(), seen.value.begin() + first);
+    for (std::size_t i = 0; i < told.se.size(); ++i)
+      seen.noise[static_cast<std::size_t>(first) + i] = std::isnan(told.se[i]) ? 0 : told.se[i];
     if (std::isnan(m.frames.front().mill_angle))
       for (std::size_t k = 0; k < layout.count(Observable::kPockets); ++k)
         seen.value[layout.first(Observable::kPockets) + k] = kNotGiven;
   }
 
-  const Estimate torque = slice_torque(m);
+  const Estimate torque = m.torque;
   if (!std::isnan(torque.value)) {
     const std::size_t at = layout.first(Observable::kTorque), closure = layout.first(Observable::kClosure);
     seen.value[at] = torque.value - torque_offset;
     seen.noise[at] = seen.noise[closure] = std::isnan(torque.se) ? 0 : torque.se;
-    if (!m.frames.empty()) seen.value[closure] = seen.value[at] - weight_couple(m, observer);
+    if (!m.frames.empty()) seen.value[closure] = seen.value[at] - held_by_torque(m, observer);
   }
   const std::size_t angles = layout.first(Observable::kAngles);
   for (std::size_t k = 2; k < kScalarData.size(); ++k) {
@@ -79,14 +116,6 @@ Observation observe(const Measurement& m, const ObservationLayout& layout, doubl
     seen.noise[angles + k - 2] = std::isnan(angle.se) ? 0 : angle.se;
   }
   return seen;
-}
-
-Estimate slice_torque(const Measurement& m) {
-  const double slices = slice_count(m.config);
-  const Experiment& e = m.experiment;
-  if (!std::isnan(e.torque.value)) return {e.torque.value / slices, e.torque.se / slices};
-  const double turning = speed_rpm(m.config.mill) * 2 * kPi / 60;
-  return {e.power.value / turning / slices, e.power.se / turning / slices};
 }
 
 }  // namespace tumble::diagnose

@@ -10,9 +10,6 @@ namespace tumble::diagnose {
 Observation observe(const Measurement& measurement, const ObservationLayout& layout, double span,
                     const Observer& observer = {}, double torque_offset = 0);
 
-// Mean torque of one slice [N m], from torque or power; NaN where neither was measured.
-Estimate slice_torque(const Measurement& measurement);
-
 // The span of velocities that these frames can show: a multiple of their spacing, 4 ms at least; NaN without frames.
 double span_of(const Measurement& measurement);
 

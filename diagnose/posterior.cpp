@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 
 namespace tumble::diagnose {
@@ -21,31 +22,44 @@ double log_sum(const std::vector<double>& logs) {
   return most + std::log(sum);
 }
 
-double testimony(const Case& of, const std::vector<int>& guilty) {
-  double sum = 0;
-  for (const Witness& w : of.witnesses)
-    if (std::find(guilty.begin(), guilty.end(), w.suspect) != guilty.end()) sum += w.log_ratio;
-  return sum;
-}
-
 bool turns(const Case& of, const std::vector<int>& guilty) {
   return std::any_of(guilty.begin(), guilty.end(),
                      [&](int s) { return of.suspects[static_cast<std::size_t>(s)].turns_with_drum; });
 }
 
+using KnownEvidence = std::map<std::pair<std::vector<int>, std::size_t>, double>;  // by guilty and lifter
+
+// Turning a drum on which all lifters are alike changes nothing, but the chance in one film it does: so who turns with
+// the drum is compared with the same accusation without him, the drum turned as far.
+double evidence_at(const Case& of, std::size_t lifter, const Explanation& e, KnownEvidence& known) {
+  if (lifter == 0) return e.log_evidence;
+  std::vector<int> others;
+  for (const int s : e.suspects)
+    if (!of.suspects[static_cast<std::size_t>(s)].turns_with_drum) others.push_back(s);
+  const auto without = [&](std::size_t l) {
+    const auto [at, is_new] = known.try_emplace({others, l}, 0);
+    if (is_new) at->second = explain(of.by_lifter[l], of.suspects, others, of.clues).log_evidence;
+    return at->second;
+  };
+  return e.log_evidence - without(lifter) + without(0);
+}
+
 // Somewhere on the drum: every lifter is as likely as the others.
-Accusation accuse(const Case& of, const std::vector<int>& guilty, double log_prior) {
+Accusation accuse(const Case& of, const std::vector<int>& guilty, double log_prior, KnownEvidence& known) {
   Accusation best;
   std::vector<double> evidence;
   const std::size_t lifters = turns(of, guilty) ? of.by_lifter.size() : 1;
+  double most = -INFINITY;
   for (std::size_t l = 0; l < lifters; ++l) {
-    Explanation e = explain(of.by_lifter[l], of.suspects, guilty);
-    evidence.push_back(e.log_evidence);
-    if (l > 0 && !(e.log_evidence > best.explanation.log_evidence)) continue;
+    Explanation e = explain(of.by_lifter[l], of.suspects, guilty, of.clues);
+    evidence.push_back(evidence_at(of, l, e, known));
+    if (!(evidence.back() > most)) continue;
+    most = evidence.back();
     best.explanation = std::move(e);
     best.lifter = static_cast<int>(l);
   }
-  best.log_weight = log_sum(evidence) - std::log(double(lifters)) + log_prior + testimony(of, guilty);
+  best.log_weight = log_sum(evidence) - std::log(double(lifters)) + log_prior;
+  best.log_beside = best.log_weight - most;
   return best;
 }
 
@@ -71,9 +85,10 @@ Posterior weigh(const Case& of) {
     }));
   };
 
-  p.accusations.push_back(accuse(of, {}, std::log(kNone)));
+  KnownEvidence known;
+  p.accusations.push_back(accuse(of, {}, std::log(kNone), known));
   for (int s = 0; s < n; ++s)
-    p.accusations.push_back(accuse(of, {s}, std::log(kSingles / double(names.size()) / of_name(s))));
+    p.accusations.push_back(accuse(of, {s}, std::log(kSingles / double(names.size()) / of_name(s)), known));
 
   std::vector<std::size_t> order(static_cast<std::size_t>(n));
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = i + 1;
@@ -88,10 +103,24 @@ Posterior weigh(const Case& of) {
       if (a == b || !done.insert({a, b}).second) continue;
       const Suspect &one = of.suspects[static_cast<std::size_t>(a)], &two = of.suspects[static_cast<std::size_t>(b)];
       if (one.name == two.name || (one.turns_with_drum && two.turns_with_drum)) continue;
-      p.accusations.push_back(accuse(of, {a, b}, std::log(kPairs / pairs / of_name(a) / of_name(b))));
+      p.accusations.push_back(accuse(of, {a, b}, std::log(kPairs / pairs / of_name(a) / of_name(b)), known));
     }
-  std::sort(p.accusations.begin(), p.accusations.end(),
-            [](const Accusation& a, const Accusation& b) { return a.log_weight > b.log_weight; });
+  settle(p, of);
+  return p;
+}
+
+Accusation weighed_again(const Accusation& accusation, const Case& of) {
+  Accusation again = accusation;
+  const auto lifter = static_cast<std::size_t>(accusation.lifter);
+  KnownEvidence known;
+  again.explanation = explain(of.by_lifter[lifter], of.suspects, accusation.explanation.suspects, of.clues);
+  again.log_weight = accusation.log_beside + evidence_at(of, lifter, again.explanation, known);
+  return again;
+}
+
+void settle(Posterior& p, const Case& of) {
+  std::stable_sort(p.accusations.begin(), p.accusations.end(),
+                   [](const Accusation& a, const Accusation& b) { return a.log_weight > b.log_weight; });
 
   // The misfit of the likeliest against that of the library's own runs, taken as measurements.
   double variance = 0, weight = 0, log_misfit = 0;
@@ -118,7 +147,6 @@ Posterior weigh(const Case& of) {
   const double all = log_sum({known, unknown});
   for (Accusation& a : p.accusations) a.probability = std::exp(a.log_weight - all);
   p.unknown = std::exp(unknown - all);
-  return p;
 }
 
 double Posterior::none() const {

@@ -8,23 +8,18 @@
 // Who is guilty, and how sure that is: every suspect alone, pairs, nobody, and somebody who is not on the list.
 namespace tumble::diagnose {
 
-// What a check without any simulation says of a suspect: how much likelier its guilt makes what was found.
-struct Witness {
-  int suspect = -1;
-  double log_ratio = 0;
-};
-
 // `by_lifter[l]`: the conditions, with the drum taken to be turned on by l lifters: for suspects that turn with it.
 struct Case {
   std::vector<std::vector<Measured>> by_lifter;
   std::span<const Suspect> suspects;
-  std::vector<Witness> witnesses;
+  std::vector<Clue> clues;
 };
 
 struct Accusation {
   Explanation explanation;
-  int lifter = 0;  // where on the drum, of suspects that turn with it
-  double log_weight = 0;
+  int lifter = 0;         // where on the drum, of suspects that turn with it
+  double log_weight = 0;  // ln of prior and evidence
+  double log_beside = 0;  // of that, what is not the evidence at this lifter
   double probability = 0;
 };
 
@@ -39,5 +34,11 @@ struct Posterior {
 };
 
 Posterior weigh(const Case& of);
+
+// The accusation again by a case whose measurements were put right.
+Accusation weighed_again(const Accusation& accusation, const Case& of);
+
+// Again, after some of the accusations were weighed anew: their order, all probabilities, the misfit.
+void settle(Posterior& posterior, const Case& of);
 
 }  // namespace tumble::diagnose

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/error.h"
 #include "core/quantile.h"
 #include "diagnose/in_turns.h"
 #include "diagnose/observe.h"
@@ -12,7 +13,9 @@
 namespace tumble::diagnose {
 namespace {
 
-constexpr double kMostlyThere = 0.8;        // of the runs must show a number
+constexpr double kMostlyThere = 0.8;  // of the runs must show a number
+constexpr int kMostRetreats = 8;
+constexpr double kRetreat = 0.7;
 constexpr std::uint64_t kSeeds = 1u << 20;  // far from those of the library
 
 double mean_of(const std::vector<std::vector<double>>& seen, std::size_t i) {
@@ -55,14 +58,23 @@ std::vector<std::string> sets_of(const Scene& scene, const std::vector<Uncertain
   return sets;
 }
 
+void make_possible(Model& model, const std::vector<Scene>& scenes, const std::vector<UncertainKey>& uncertain,
+                   const MillWith& mill_with) {
+  for (int retreat = 0;; ++retreat) try {
+      for (const Scene& scene : scenes) mill_with(scene.measurement->config, sets_of(scene, uncertain, model));
+      return;
+    } catch (const InputError&) {
+      if (retreat == kMostRetreats) throw;
+      model.places.head(static_cast<Eigen::Index>(uncertain.size())) *= kRetreat;
+    }
+}
+
 std::vector<double> corrected(const Scene& scene, const Model& model, std::vector<double>& noise) {
   const ObservationLayout layout(scene.measurement->config.mill.lifters.count);
   double offset = 0;
   for (std::size_t s = 0; s < scene.suspects.size(); ++s)
-    offset += strength_at(scene, model, s) * scene.suspects[s].torque_offset;
-  const double torque = slice_torque(*scene.measurement).value;
-  Observation seen = observe(*scene.measurement, layout, scene.span, opposite(observer_of(scene, model)),
-                             std::isnan(torque) ? 0 : torque * (1 - 1 / (1 + offset)));
+    offset += strength_at(scene, model, s) * scene.suspects[s].torque_offset * scene.torque_unit;
+  Observation seen = observe(*scene.measurement, layout, scene.span, opposite(observer_of(scene, model)), offset);
   noise = std::move(seen.noise);
   return turned_on(layout, seen.value, model.lifter);
 }
@@ -75,7 +87,7 @@ std::vector<Replicas> resimulate(const std::vector<Scene>& scenes, const std::ve
     const Scene& scene = scenes[i / seeds];
     Config config = mill_with(scene.measurement->config, sets_of(scene, uncertain, model));
     config.run.seed = kSeeds + i;
-    all[i] = run_signature(config, own, Watched::kRight);
+    all[i] = run_signature(config, scene.measurement->config, own, Watched::kRight);
   });
   std::vector<Replicas> by_scene(scenes.size());
   for (std::size_t i = 0; i < all.size(); ++i) {

@@ -22,10 +22,14 @@ struct Scene {  // an experiment with all that it takes to simulate it under a m
   std::vector<Suspect> suspects;  // of its own config: full strengths hang on it
   std::vector<double> middle;     // of the uncertain keys
   double span = kNotGiven;
+  double torque_unit = 0;  // mean torque of the fitted experiments [N m of one slice]
 };
 
 // What makes the scene's mill that of the model, as --set takes it.
 std::vector<std::string> sets_of(const Scene& scene, const std::vector<UncertainKey>& uncertain, const Model& model);
+// A value of an uncertain key that no mill can have (a restitution above 1) gives way to one nearer to MILL.toml's.
+void make_possible(Model& model, const std::vector<Scene>& scenes, const std::vector<UncertainKey>& uncertain,
+                   const MillWith& mill_with);
 // The experiment's numbers as they would be without the errors of measurement that the model knows of.
 std::vector<double> corrected(const Scene& scene, const Model& model, std::vector<double>& noise);
 

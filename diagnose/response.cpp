@@ -13,6 +13,7 @@ constexpr double kLinear = 100;
 constexpr std::array kBends{0.01, 0.03, 0.1, 0.3, 1.0};  // curvature, as a share of what is linear
 constexpr double kLeastSize = 0.2;
 constexpr double kMostOwnShare = 0.95;
+constexpr double kHeaviestTail = 5;  // degrees of freedom
 
 struct Fit {
   Eigen::MatrixXd coefficients, information;
@@ -40,8 +41,9 @@ Fit fit_ridge(const Eigen::MatrixXd& design, const Eigen::MatrixXd& seen, const 
 }  // namespace
 
 Response::Response(const std::vector<const SignatureRun*>& runs, const std::vector<Suspect>& suspects,
-                   const std::vector<std::size_t>& chosen, const std::vector<double>& noise, double span)
-    : features_(runs, suspects, chosen, noise, span), uncertain_(runs.front()->uncertain.size()) {
+                   const std::vector<std::size_t>& chosen, const std::vector<double>& noise, double span,
+                   double torque_unit)
+    : features_(runs, suspects, chosen, noise, span, torque_unit), uncertain_(runs.front()->uncertain.size()) {
   const std::size_t d = uncertain_;
   simulated_terms_ = 1 + d + d * (d + 1) / 2;
   terms_of_.resize(suspects.size());
@@ -58,7 +60,7 @@ Response::Response(const std::vector<const SignatureRun*>& runs, const std::vect
   }
   coefficients_ = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(terms_), seen.cols());
   fit(runs, seen);
-  fit_observers(runs, seen, suspects, span);
+  fit_observers(runs, seen, suspects, span, torque_unit);
 
   Eigen::MatrixXd rest = seen;
   for (std::size_t r = 0; r < runs.size(); ++r) {
@@ -176,7 +178,7 @@ std::vector<Eigen::Index> Response::linear_terms() const {
 
 // Each run is its own twin: chance has no part in what an observer's error changes.
 void Response::fit_observers(const std::vector<const SignatureRun*>& runs, const Eigen::MatrixXd& seen,
-                             const std::vector<Suspect>& suspects, double span) {
+                             const std::vector<Suspect>& suspects, double span, double torque_unit) {
   const auto n = static_cast<Eigen::Index>(runs.size()), d = static_cast<Eigen::Index>(uncertain_);
   Eigen::MatrixXd design(n, 1 + d);
   for (Eigen::Index r = 0; r < n; ++r) {
@@ -196,7 +198,7 @@ void Response::fit_observers(const std::vector<const SignatureRun*>& runs, const
       Eigen::VectorXd less, more;
       if (suspect.torque_offset != 0) {
         std::vector<double> shifted = observed_at(runs[run]->seen, span);
-        const double offset = kObserved * suspect.torque_offset * shifted[0];
+        const double offset = kObserved * suspect.torque_offset * torque_unit;
         shifted[0] += offset;
         shifted[1] += offset;
         more = features_.of_run(run, shifted);
@@ -220,16 +222,23 @@ void Response::fit_observers(const std::vector<const SignatureRun*>& runs, const
 void Response::whiten(const Eigen::MatrixXd& residuals) {
   Eigen::MatrixXd covariance = residuals.transpose() * residuals / double(residuals.rows());
   covariance.diagonal() *= 1 + 1e-6;
+  // A feature that nothing moves, of a suspect that no number shows (a torque's offset without a torque), stays 0.
+  const double least = 1e-9 * covariance.diagonal().maxCoeff();
+  alive_ = static_cast<std::size_t>((covariance.diagonal().array() > least).count());
+  covariance.diagonal().array() += least;
   lower_ = (covariance + features_.noise()).llt().matrixL();
   const Eigen::MatrixXd z = lower_.triangularView<Eigen::Lower>().solve(residuals.transpose());
   double sum = 0, square = 0;
   for (Eigen::Index r = 0; r < z.cols(); ++r) {
-    const double log_chi2 = std::log(z.col(r).squaredNorm() / double(z.rows()));
+    const double log_chi2 = std::log(z.col(r).squaredNorm() / double(alive_));
     sum += log_chi2;
     square += log_chi2 * log_chi2;
   }
   const double n = double(z.cols());
   log_misfit_ = {sum / n, std::sqrt(std::max(square / n - sum * sum / (n * n), 1e-6))};
+  // The logarithm of chi2 varies by 2 / n for normal numbers, by 2 / n + 2 / freedom for Student's.
+  const double beyond = log_misfit_.sd * log_misfit_.sd - 2 / double(alive_);
+  tail_freedom_ = std::clamp(beyond > 0 ? 2 / beyond : freedom_, std::min(kHeaviestTail, freedom_), freedom_);
   white_ = lower_.triangularView<Eigen::Lower>().solve(coefficients_.transpose());
 }
 

@@ -12,7 +12,7 @@ class Response {
  public:
   // As Features.
   Response(const std::vector<const SignatureRun*>& runs, const std::vector<Suspect>& suspects,
-           const std::vector<std::size_t>& chosen, const std::vector<double>& noise, double span);
+           const std::vector<std::size_t>& chosen, const std::vector<double>& noise, double span, double torque_unit);
 
   // In units of what chance does to one run of the library's length, without correlation: the features' mean at these
   // places [standard deviations; strengths] and its slopes along them.
@@ -32,11 +32,14 @@ class Response {
     double mean = 0, sd = 1;
   };
   const Spread& log_misfit() const { return log_misfit_; }
-  std::size_t numbers() const { return static_cast<std::size_t>(features_.count()); }
+  std::size_t numbers() const { return alive_; }  // features, but for those that nothing moves
   std::size_t uncertain() const { return uncertain_; }
   std::size_t suspects() const { return terms_of_.size(); }
   double revolutions() const { return revolutions_; }  // of a run, on average
   double freedom() const { return freedom_; }          // degrees of freedom that the scatter is known by
+  // Of the multivariate Student's t that one run's numbers follow about their mean: charges pack and lock in ways of
+  // their own, so some runs lie farther off in all their numbers than others.
+  double tail_freedom() const { return tail_freedom_; }
 
  private:
   Eigen::VectorXd places_of(const SignatureRun& run) const;
@@ -44,7 +47,7 @@ class Response {
   Eigen::MatrixXd basis_slope(const Eigen::VectorXd& places) const;
   void fit(const std::vector<const SignatureRun*>& runs, const Eigen::MatrixXd& seen);
   void fit_observers(const std::vector<const SignatureRun*>& runs, const Eigen::MatrixXd& seen,
-                     const std::vector<Suspect>& suspects, double span);
+                     const std::vector<Suspect>& suspects, double span, double torque_unit);
   std::vector<Eigen::Index> linear_terms() const;
   void whiten(const Eigen::MatrixXd& residuals);
 
@@ -53,7 +56,8 @@ class Response {
   std::vector<std::size_t> terms_of_;  // first term of each suspect
   std::size_t simulated_terms_ = 0, terms_ = 0;
   double revolutions_ = 0;
-  double freedom_ = 0;
+  double freedom_ = 0, tail_freedom_ = 0;
+  std::size_t alive_ = 0;
   Spread log_misfit_;
   Eigen::MatrixXd coefficients_;  // terms x features
   Eigen::MatrixXd information_;   // inverse, of the simulated terms

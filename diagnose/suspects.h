@@ -29,7 +29,8 @@ struct Suspect {
   // It is somewhere on the drum, and looked for at every lifter: simulated at lifter 0.
   bool turns_with_drum = false;
   bool acts_in_contacts = false;
-  // Or seen: how the observer errs at strength 1, or the torque's offset [share of the mean torque].
+  // Or seen: how the observer errs at strength 1, or the torque's offset, one and the same in all
+  // experiments [share of the mean torque of those that are fitted].
   Observer observer;
   double torque_offset = 0;
   // What strength 1 is, for the report: of this parameter, in this unit.

@@ -3,38 +3,45 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <memory>
-#include <set>
+#include <map>
 
 #include "core/error.h"
+#include "core/mill_shape.h"
 #include "core/statistics.h"
+#include "diagnose/account.h"
+#include "diagnose/exact_checks.h"
+#include "diagnose/further.h"
 #include "diagnose/observe.h"
+#include "diagnose/proofs.h"
+#include "diagnose/rivals.h"
+#include "diagnose/ruling.h"
 
 namespace tumble::diagnose {
 namespace {
 
-constexpr double kSure = 0.9;  // probability of one name beside which the others are no rivals
-constexpr double kCredible = 0.95;
-constexpr std::size_t kProven = 3;  // likeliest accusations that are simulated, beside that of nobody
-
-struct Fitted {  // a measurement that is not held out, and what is known of its condition
-  std::size_t scene = 0;
-  std::unique_ptr<Response> response;
-  std::vector<std::vector<double>> by_lifter;  // its numbers, the drum turned on
-};
-
-struct Proof {  // an accusation, simulated in all scenes
-  Accusation accusation;
-  Model model;
-  std::vector<Replicas> runs;  // by scene
-};
+constexpr int kRounds = 3;              // of simulating anew where the last round says that the likeliest lie
+constexpr double kBehind = 12;          // ln: further behind, the polynomial's errors do not bring an accusation back
+constexpr std::size_t kMostTried = 4;   // accusations in the first round, beside that of nobody
+constexpr std::size_t kTriedAgain = 2;  // in the further ones
+constexpr std::array kShares{0.55, 0.15, 0.1, 0.1};  // of the time: each round, and what is held out
+constexpr double kShownShare = 0.9;                  // then what to measure next
+constexpr double kHeard = 3;                         // ln: a witness that says less is not called
+constexpr double kLoudest = 50;                      // ln: no witness counts for more
+constexpr double kRarest = 1e-30;
 
 std::vector<Scene> scenes_of(const DiagnosisRequest& r) {
   std::vector<Scene> scenes;
+  double torque = 0, fitted = 0;
+  for (const Measurement& m : r.measurements) {
+    if (m.experiment.hold_out || std::isnan(m.torque.value)) continue;
+    torque += m.torque.value;
+    fitted += 1;
+  }
   const auto& names = r.conditions.front().suspects;
   for (const Measurement& m : r.measurements) {
-    Scene scene{&m, suspects_of(m.config), r.middle, span_of(m)};
+    Scene scene{&m, suspects_of(m.config), r.middle, span_of(m), fitted > 0 ? torque / fitted : 0};
     if (std::isnan(scene.span)) scene.span = kSpans.front();
     const bool alike = scene.suspects.size() == names.size() &&
                        std::equal(names.begin(), names.end(), scene.suspects.begin(),
@@ -48,368 +55,278 @@ std::vector<Scene> scenes_of(const DiagnosisRequest& r) {
   return scenes;
 }
 
-Fitted fit(const Condition& condition, const Scene& scene, std::size_t index) {
-  const ObservationLayout layout(scene.measurement->config.mill.lifters.count);
-  const Observation seen = observe(*scene.measurement, layout, scene.span);
-  std::vector<const SignatureRun*> runs;
-  for (const SignatureRun& run : condition.runs) runs.push_back(&run);
-  std::vector<std::vector<double>> shown;
-  for (const SignatureRun* run : runs) shown.push_back(observed_at(run->seen, scene.span));
-  std::vector<std::size_t> chosen;
-  std::vector<double> noise;
-  for (std::size_t i = 0; i < layout.size(); ++i) {
-    const bool told = std::all_of(shown.begin(), shown.end(), [&](const auto& s) { return !std::isnan(s[i]); });
-    if (std::isnan(seen.value[i]) || !told) continue;
-    chosen.push_back(i);
-    noise.push_back(seen.noise[i]);
-  }
-  if (chosen.empty())
-    throw InputError(scene.measurement->experiment.place,
-                     "brings nothing that simulations of it show too; give torque, toe and shoulder, or a film");
-  Fitted f{index, std::make_unique<Response>(runs, condition.suspects, chosen, noise, scene.span), {}};
-  const bool turning = !std::isnan(seen.value[layout.first(Observable::kPockets)]);
-  for (int l = 0; l < (turning ? layout.pockets : 1); ++l) f.by_lifter.push_back(turned_on(layout, seen.value, l));
-  return f;
+DiagnosedExperiment described(const Measurement& m) {
+  const Experiment& e = m.experiment;
+  std::string data;
+  const auto add = [&](bool there, const char* what) {
+    if (there) data += (data.empty() ? "" : ", ") + std::string(what);
+  };
+  add(!std::isnan(m.torque.value), m.torque_series.empty() ? "torque" : "torque in time");
+  add(!std::isnan(e.toe_deg.value) || !std::isnan(e.shoulder_deg.value), "toe and shoulder");
+  add(!m.frames.empty(), m.is_film ? "film" : "tracks of balls");
+  return {e.name,
+          data,
+          e.hold_out,
+          speed_fraction(m.config.mill),
+          filling_of(m.config, class_counts(m.config)),
+          make_mill_shape(m.config),
+          {}};
 }
 
-Case case_of(const std::vector<Fitted>& fitted, const std::vector<Scene>& scenes,
-             const std::vector<Witness>& witnesses) {
-  Case c;
-  c.witnesses = witnesses;
-  c.suspects = scenes.front().suspects;
-  std::size_t lifters = fitted.front().by_lifter.size();
-  for (const Fitted& f : fitted) lifters = std::min(lifters, f.by_lifter.size());
-  for (std::size_t l = 0; l < lifters; ++l) {
-    std::vector<Measured> measured;
-    for (const Fitted& f : fitted) {
-      const double watched = scenes[f.scene].measurement->revolutions;
-      measured.push_back(
-          {f.response.get(), f.response->whitened(f.by_lifter[l]), watched > 0 ? watched : f.response->revolutions()});
+// A mill's angle tells of ripples in its speed, of any order and phase, what no map of the charge shows. The one that
+// stands out in the fitted experiments; 0 where none does.
+int order_of_ripple(const std::vector<Measurement>& measurements) {
+  std::map<int, double> rarity;
+  for (const Measurement& m : measurements) {
+    if (m.experiment.hold_out) continue;
+    for (const RippleOrder& r : ripple_orders(m)) rarity[r.order] -= std::log(std::max(r.p, kRarest));
+  }
+  int order = 0;
+  double most = kHeard + std::log(std::max<double>(1, double(rarity.size())));
+  for (const auto& [n, rare] : rarity)
+    if (rare > most) most = rare, order = n;
+  return order;
+}
+
+// The ripple that is suspected becomes the one that is seen; what its amplitude is, a clue tells.
+void tell_ripple(Scene& scene, int order, std::vector<Clue>& clues) {
+  const auto at = std::find_if(scene.suspects.begin(), scene.suspects.end(),
+                               [](const Suspect& s) { return s.name == "speed_ripple"; });
+  const auto orders = ripple_orders(*scene.measurement);
+  if (at == scene.suspects.end() || orders.empty()) return;
+  const RippleOrder& r = orders[static_cast<std::size_t>(std::max(1, order) - 1)];
+  if (order > 0) {
+    at->turns_with_drum = false;
+    at->fixed = {fmt::format("effects.speed_ripple.order={}", r.order),
+                 fmt::format("effects.speed_ripple.phase_deg={:.1f}", r.phase_deg)};
+  }
+  if (scene.measurement->experiment.hold_out || !(r.se > 0) || !std::isfinite(r.amplitude)) return;
+  // Noise makes any amplitude larger.
+  const double amplitude = std::sqrt(std::max(0.0, r.amplitude * r.amplitude - 2 * r.se * r.se));
+  clues.push_back({{{static_cast<int>(at - scene.suspects.begin()), at->full}}, amplitude, r.se});
+}
+
+// Checks that only errors of measurement can move, and that no map of the charge repeats.
+std::vector<Clue> clues_of(const std::vector<ExactCheck>& checks, std::span<const Suspect> suspects) {
+  std::vector<Clue> clues;
+  for (const ExactCheck& check : checks) {
+    if (check.name.starts_with("flight") || check.moved_by.empty() || !(check.se > 0) || !std::isfinite(check.z))
+      continue;
+    Clue clue{{}, check.found - check.expected, check.se};
+    bool clean = true;
+    for (const MovedBy& by : check.moved_by) {
+      const auto at =
+          std::find_if(suspects.begin(), suspects.end(), [&](const Suspect& s) { return s.name == by.suspect; });
+      clean = clean && at != suspects.end() && at->kind == SuspectKind::kArtefact && !std::isnan(by.per);
+      if (clean) clue.slopes.emplace_back(static_cast<int>(at - suspects.begin()), at->full / by.per);
     }
-    c.by_lifter.push_back(std::move(measured));
+    if (clean) clues.push_back(std::move(clue));
   }
-  return c;
+  return clues;
 }
 
-std::set<std::string> names_of(const Accusation& a, const std::vector<Suspect>& suspects) {
-  std::set<std::string> names;
-  for (const int s : a.explanation.suspects) names.insert(suspects[static_cast<std::size_t>(s)].name);
-  return names;
-}
-
-// The accusation again, with the polynomial put right where its simulations lie.
-void reconsider(Proof& proof, const std::vector<Fitted>& fitted, const std::vector<Scene>& scenes, const Case& of) {
-  std::vector<Measured> measured = of.by_lifter[static_cast<std::size_t>(proof.accusation.lifter)];
-  const auto keys = static_cast<Eigen::Index>(scenes.front().middle.size());
-  for (std::size_t i = 0; i < fitted.size(); ++i) {
-    const Scene& scene = scenes[fitted[i].scene];
-    const auto& runs = proof.runs[fitted[i].scene];
-    if (runs.seen.size() < 2) return;
-    Eigen::VectorXd places = proof.model.places;
-    for (std::size_t s = 0; s < scene.suspects.size(); ++s)
-      if (!scene.suspects[s].is_simulated()) places[keys + static_cast<Eigen::Index>(s)] = 0;
-    Eigen::VectorXd mean = Eigen::VectorXd::Zero(measured[i].seen.size());
-    for (const auto& seen : runs.seen) mean += fitted[i].response->whitened(seen) / double(runs.seen.size());
-    measured[i].shift = mean - fitted[i].response->at(places).mean;
-    measured[i].shift_variance = 1 / double(runs.seen.size());
-  }
-  const Explanation again = explain(measured, of.suspects, proof.accusation.explanation.suspects);
-  proof.accusation.log_weight += again.log_evidence - proof.accusation.explanation.log_evidence;
-  proof.accusation.explanation = again;
-}
-
-NameKind kind_of(const Suspect& suspect) {
-  return suspect.kind == SuspectKind::kPhysics ? NameKind::kPhysics : NameKind::kArtefact;
-}
-
-FoundParameter strength_in_units(const Suspect& suspect, const Explanation& e, int place) {
-  return {suspect.parameter, suspect.unit, {e.places[place] * suspect.full, e.se(place) * suspect.full}};
-}
-
-// Of each name: how probable, and how strong it would be alone.
-std::vector<RankedName> ranking_of(const Posterior& p, const std::vector<Suspect>& suspects, int keys) {
-  std::vector<RankedName> ranking;
-  std::set<std::string> done;
-  for (std::size_t s = 0; s < suspects.size(); ++s) {
-    if (!done.insert(suspects[s].name).second) continue;
-    RankedName r{suspects[s].name, kind_of(suspects[s]), p.inclusion(suspects, suspects[s].name), {}, kNotGiven, {}};
-    for (const Accusation& a : p.accusations) {  // likeliest first
-      if (names_of(a, suspects) != std::set<std::string>{r.name}) continue;
-      const int guilty = a.explanation.suspects.front();
-      r.strength = strength_in_units(suspects[static_cast<std::size_t>(guilty)], a.explanation, keys + guilty);
-      r.misfit = std::sqrt(a.explanation.chi2 / a.explanation.numbers);
-      break;
-    }
-    ranking.push_back(std::move(r));
-  }
-  ranking.push_back({"none", NameKind::kNone, p.none(), {}, kNotGiven, {}});
-  ranking.push_back({"unknown", NameKind::kUnknown, p.unknown, {}, kNotGiven, {}});
-  for (const Accusation& a : p.accusations)
-    if (a.explanation.suspects.empty())
-      ranking[ranking.size() - 2].misfit = std::sqrt(a.explanation.chi2 / a.explanation.numbers);
-  std::stable_sort(ranking.begin(), ranking.end(),
-                   [](const RankedName& a, const RankedName& b) { return a.probability > b.probability; });
-  return ranking;
-}
-
-// The verdict that the probabilities come to, and whom it names.
-struct Ruling {
-  Finding finding = Finding::kAgreement;
-  std::set<std::string> names;
-};
-
-Ruling rule(const Posterior& p, const std::vector<Suspect>& suspects) {
-  if (p.unknown > 0.5) return {Finding::kUnknownEffect, {}};
-  std::set<std::string> likeliest;
-  std::vector<std::pair<std::set<std::string>, double>> sets;  // of names, likeliest first
-  for (const Accusation& a : p.accusations) {
-    const std::set<std::string> names = names_of(a, suspects);
-    const auto at = std::find_if(sets.begin(), sets.end(), [&](const auto& s) { return s.first == names; });
-    if (at == sets.end())
-      sets.emplace_back(names, a.probability);
-    else
-      at->second += a.probability;
-  }
-  std::stable_sort(sets.begin(), sets.end(), [](const auto& a, const auto& b) { return a.second > b.second; });
-  const std::set<std::string>& best = sets.front().first;
-  const double known = 1 - p.unknown;
-  // Sure of what is named when hardly anything likely does without it.
-  double agreeing = 0;
-  for (const auto& [names, probability] : sets)
-    if (std::includes(names.begin(), names.end(), best.begin(), best.end()) && (!best.empty() || names.empty()))
-      agreeing += probability;
-  if (agreeing >= kSure * known || sets.front().second >= kSure) {
-    if (best.empty()) return {Finding::kAgreement, {}};
-    const bool artefacts = std::all_of(best.begin(), best.end(), [&](const std::string& name) {
-      return std::any_of(suspects.begin(), suspects.end(),
-                         [&](const Suspect& s) { return s.name == name && s.kind == SuspectKind::kArtefact; });
-    });
-    return {artefacts ? Finding::kMeasurementArtefact : Finding::kMissingEffect, best};
-  }
-  if (best.empty() && sets.front().second > 0.5) return {Finding::kAgreement, {}};
-  Ruling ruling{Finding::kAmbiguous, {}};
-  double sum = p.unknown;
-  for (const auto& [names, probability] : sets) {
-    if (sum >= kCredible) break;
-    ruling.names.insert(names.begin(), names.end());
-    sum += probability;
-  }
-  return ruling;
-}
-
-Proof prove(const Accusation& a, const std::vector<Scene>& scenes, const DiagnosisRequest& r, const MillWith& mill_with,
-            const Progress& progress) {
-  Proof proof{a, {a.explanation.places, a.lifter}, {}};
-  // Observers that nobody accuses err by nothing that is worth correcting.
-  const auto keys = static_cast<Eigen::Index>(r.middle.size());
-  for (std::size_t s = 0; s < scenes.front().suspects.size(); ++s) {
-    const bool guilty = std::find(a.explanation.suspects.begin(), a.explanation.suspects.end(), static_cast<int>(s)) !=
-                        a.explanation.suspects.end();
-    if (!guilty) proof.model.places[keys + static_cast<Eigen::Index>(s)] = 0;
-  }
-  proof.runs = resimulate(scenes, r.uncertain, proof.model, r.seeds, mill_with, progress);
-  return proof;
-}
-
-Progress share_of(const Progress& progress, std::size_t part, std::size_t parts) {
-  if (!progress) return {};
-  return [progress, part, parts](double done) { progress((double(part) + done) / double(parts)); };
-}
-
-// The places and gaps of every experiment, before and after.
-class Account {
+// The likeliest accusations, put to the proof until they lie where they were simulated.
+class Court {
  public:
-  Account(const std::vector<Scene>& scenes, const Proof& before, const Proof& after, const Proof* runner_up)
-      : scenes_(scenes), before_(before), after_(after), runner_up_(runner_up) {}
+  Court(const std::vector<Scene>& scenes, const std::vector<Fitted>& fitted, const Case& of, const Bench& bench,
+        const Progress& progress)
+      : scenes_(scenes),
+        fitted_(fitted),
+        of_(of),
+        bench_(bench),
+        progress_(progress),
+        keys_(scenes.front().middle.size()),
+        posterior_(weigh(of)) {}
 
-  void fill(Diagnosis& d) const {
-    for (std::size_t i = 0; i < scenes_.size(); ++i) fill(d, i);
-    std::stable_sort(d.where.begin(), d.where.end(),
-                     [](const PlaceOfGap& a, const PlaceOfGap& b) { return std::abs(a.z) > std::abs(b.z); });
+  void hear() {
+    for (int round = 0; round < kRounds; ++round) {
+      const std::vector<Accusation> summoned = summon(round == 0);
+      for (std::size_t i = 0; i < summoned.size(); ++i) try_one(summoned[i], stage(round, i, summoned.size()));
+      settle(posterior_, of_);
+      if (summoned.empty()) break;
+    }
   }
+
+  // The likeliest accusation of exactly these, put to the proof if it was not.
+  Proof* prove(const std::set<std::string>& names) {
+    for (const Accusation& a : posterior_.accusations) {
+      if (names_of(a, of_.suspects) != names) continue;
+      if (proofs_.find(a.explanation.suspects) == proofs_.end()) try_one(a, {});
+      return proof_of(a.explanation.suspects);
+    }
+    return nullptr;
+  }
+
+  // The same in what is held out.
+  void cross_examine(const std::vector<Proof*>& proofs) {
+    for (std::size_t i = 0; i < proofs.size(); ++i)
+      simulations_ += simulate(*proofs[i], bench_, true, stage(kRounds, i, proofs.size()));
+  }
+
+  Proof* proof_of(const std::vector<int>& suspects) {
+    const auto at = proofs_.find(suspects);
+    return at == proofs_.end() ? nullptr : &at->second;
+  }
+  const Posterior& posterior() const { return posterior_; }
+  std::size_t simulations() const { return simulations_; }
 
  private:
-  void fill(Diagnosis& d, std::size_t index) const {
-    const Scene& scene = scenes_[index];
-    const Experiment& e = scene.measurement->experiment;
-    const ObservationLayout layout(scene.measurement->config.mill.lifters.count);
-    std::vector<const Replicas*> sets{&before_.runs[index], &after_.runs[index]};
-    if (runner_up_ != nullptr) sets.push_back(&runner_up_->runs[index]);
-    const std::vector<double> scatter = scatter_of(sets);
-    if (scatter.empty()) return;
-    const Contrast before = contrast(scene, before_.model, before_.runs[index], scatter),
-                   after = contrast(scene, after_.model, after_.runs[index], scatter);
-    GapRow row{e.name, e.hold_out, before.chi, after.chi, kNotGiven, slice_torque(*scene.measurement), {}, {}};
-    if (runner_up_ != nullptr) row.runner_up = contrast(scene, runner_up_->model, runner_up_->runs[index], scatter).chi;
-    row.torque_before = torque_of(before_.runs[index]);
-    row.torque_after = torque_of(after_.runs[index]);
-    d.gaps.push_back(row);
-
-    std::vector<double> z_before(layout.size(), kNotGiven), z_after = z_before, measured = z_before,
-                                                            shown_before = z_before, shown_after = z_before;
-    for (std::size_t k = 0; k < before.numbers.size(); ++k) {
-      z_before[before.numbers[k]] = before.z[k];
-      measured[before.numbers[k]] = before.measured[k];
-      shown_before[before.numbers[k]] = before.simulated[k];
-    }
-    for (std::size_t k = 0; k < after.numbers.size(); ++k) {
-      z_after[after.numbers[k]] = after.z[k];
-      shown_after[after.numbers[k]] = after.simulated[k];
-    }
-    for (const Observable o : kObservables) {
-      const std::size_t first = layout.first(o), count = layout.count(o);
-      const double limit = chance_limit(sets, scatter, first, count);
-      double chi_before = 0, chi_after = 0, n = 0;
-      for (std::size_t k = first; k < first + count; ++k) {
-        if (std::isnan(z_before[k]) || std::isnan(z_after[k])) continue;
-        chi_before += z_before[k] * z_before[k];
-        chi_after += z_after[k] * z_after[k];
-        n += 1;
-        if (std::abs(z_before[k]) > limit)
-          d.where.push_back({e.name, name_of(o), layout.region(k), z_before[k], z_after[k]});
-      }
-      if (n == 0) continue;
-      chi_before = std::sqrt(chi_before / n);
-      chi_after = std::sqrt(chi_after / n);
-      // Worse by more than two standard errors of a root mean square of n numbers.
-      if (chi_after > chi_before + 2 * chi_after / std::sqrt(2 * n))
-        d.worse.push_back({e.name, name_of(o), chi_before, chi_after});
-      add_map(d, e.name, o, layout, {measured, shown_before, shown_after, z_before, z_after}, limit);
-    }
+  void try_one(const Accusation accusation, const Progress& stage) {
+    const std::vector<int>& guilty = accusation.explanation.suspects;
+    Proof proof = diagnose::proof_of(accusation, scenes_.size(), keys_);
+    simulations_ += simulate(proof, bench_, false, stage);
+    const auto before = proofs_.find(guilty);
+    proof.correction =
+        correction_by(proof, fitted_, scenes_, before == proofs_.end() ? Correction{} : before->second.correction);
+    proof.corrected = corrected(of_, proof.correction);
+    proofs_[guilty] = std::move(proof);
+    for (Accusation& a : posterior_.accusations) correct(a, guilty);
+    for (const Accusation& a : posterior_.accusations)
+      if (a.explanation.suspects == guilty) proofs_[guilty].accusation = a;
   }
 
-  static Estimate torque_of(const Replicas& runs) {
-    std::vector<Estimate> torques;
-    for (const auto& seen : runs.seen) torques.push_back({seen[0], kNotGiven});
-    return mean_of_repeats(torques);
+  // Who was simulated alone puts right all accusations that name another beside him too. What a pair's own runs say
+  // counts where they do not speak for it: a few runs by chance fit better, and pairs are many.
+  void correct(Accusation& a, const std::vector<int>& tried) const {
+    const std::vector<int>& named = a.explanation.suspects;
+    std::vector<std::vector<int>> by{named};
+    if (named.size() == 2) by.push_back({likelier_of(named)});
+    if (std::find(by.begin(), by.end(), tried) == by.end()) return;
+    std::vector<Accusation> again;
+    for (const std::vector<int>& suspects : by)
+      if (const auto at = proofs_.find(suspects); at != proofs_.end())
+        again.push_back(weighed_again(a, at->second.corrected));
+    a = *std::min_element(again.begin(), again.end(),
+                          [](const Accusation& x, const Accusation& y) { return x.log_weight < y.log_weight; });
   }
 
-  static void add_map(Diagnosis& d, const std::string& experiment, Observable o, const ObservationLayout& layout,
-                      const std::array<std::vector<double>, 5>& numbers, double limit) {
-    const bool round = o == Observable::kPockets;
-    if (!round && o != Observable::kOccupancy && o != Observable::kMomentum && o != Observable::kAgitation &&
-        o != Observable::kSpin)
-      return;
-    const std::size_t parts = round || o == Observable::kMomentum ? 2 : 1, each = layout.count(o) / parts;
-    constexpr std::array kNames{"", " x", " y"};
-    for (std::size_t part = 0; part < parts; ++part) {
-      GapMap map;
-      map.experiment = experiment;
-      map.observable = round ? (part == 0 ? "balls in the pockets" : "slip in the pockets")
-                             : std::string(name_of(o)) + (parts == 2 ? kNames[1 + part] : kNames[0]);
-      map.n = round ? 0 : kCells;
-      map.cell = 2.0 / kCells;
-      map.limit = limit;
-      std::array<std::vector<double>*, 5> into{&map.measured, &map.before, &map.after, &map.z_before, &map.z_after};
-      for (std::size_t which = 0; which < into.size(); ++which) {
-        const auto from = numbers[which].begin() + static_cast<std::ptrdiff_t>(layout.first(o) + part * each);
-        if (round) {
-          into[which]->assign(from, from + static_cast<std::ptrdiff_t>(each));
-          continue;
-        }
-        for (const int cell : layout.cell_at) into[which]->push_back(cell < 0 ? kNotGiven : from[cell]);
-      }
-      d.maps.push_back(std::move(map));
+  int likelier_of(const std::vector<int>& pair) const {
+    double most = -INFINITY;
+    int likelier = -1;
+    for (const Accusation& a : posterior_.accusations) {
+      const std::vector<int>& named = a.explanation.suspects;
+      if (named.size() != 1 || a.log_weight <= most || std::find(pair.begin(), pair.end(), named.front()) == pair.end())
+        continue;
+      most = a.log_weight;
+      likelier = named.front();
     }
+    return likelier;
+  }
+
+  std::vector<Accusation> summon(bool first) const {
+    std::vector<Accusation> list;
+    const auto add = [&](const std::vector<int>& suspects) {
+      const auto is_it = [&](const Accusation& a) { return a.explanation.suspects == suspects; };
+      if (std::any_of(list.begin(), list.end(), is_it)) return;
+      const auto known = proofs_.find(suspects);
+      if (known != proofs_.end() && (first || !has_moved(known->second, keys_))) return;
+      const auto at = std::find_if(posterior_.accusations.begin(), posterior_.accusations.end(), is_it);
+      if (at != posterior_.accusations.end()) list.push_back(*at);
+    };
+    const Accusation& best = posterior_.accusations.front();
+    const std::set<std::string> names = names_of(best, of_.suspects);
+    std::size_t tried = 0, others = 0;
+    if (first) add({});
+    for (const Accusation& a : posterior_.accusations) {
+      const bool other = names_of(a, of_.suspects) != names && !a.explanation.suspects.empty();
+      // One rival at least, however far behind: the repair must be better than that.
+      if (tried >= (first ? kMostTried : kTriedAgain) || (a.log_weight < best.log_weight - kBehind && others > 0))
+        break;
+      ++tried;
+      others += other;
+      add(a.explanation.suspects);
+      if (first && a.explanation.suspects.size() > 1)
+        for (const int s : a.explanation.suspects) add({s});
+    }
+    return list;
+  }
+
+  Progress stage(int round, std::size_t part, std::size_t parts) const {
+    if (!progress_) return {};
+    double before = 0;
+    for (int r = 0; r < round; ++r) before += kShares[static_cast<std::size_t>(r)];
+    const double share = kShares[static_cast<std::size_t>(round)];
+    return [this, before, share, part, parts](double done) {
+      progress_(before + share * (double(part) + done) / double(parts));
+    };
   }
 
   const std::vector<Scene>& scenes_;
-  const Proof &before_, &after_;
-  const Proof* runner_up_;
+  const std::vector<Fitted>& fitted_;
+  const Case& of_;
+  const Bench& bench_;
+  const Progress& progress_;
+  std::size_t keys_;
+  Posterior posterior_;
+  std::map<std::vector<int>, Proof> proofs_;  // by suspects
+  std::size_t simulations_ = 0;
 };
 
-void sort_again(Posterior& p, const std::vector<Proof>& proofs) {
-  const double known = 1 - p.unknown;
-  for (const Proof& proof : proofs)
-    for (Accusation& a : p.accusations)
-      if (a.explanation.suspects == proof.accusation.explanation.suspects) a = proof.accusation;
-  double most = -INFINITY, sum = 0;
-  for (const Accusation& a : p.accusations) most = std::max(most, a.log_weight);
-  for (const Accusation& a : p.accusations) sum += std::exp(a.log_weight - most);
-  for (Accusation& a : p.accusations) a.probability = known * std::exp(a.log_weight - most) / sum;
-  std::stable_sort(p.accusations.begin(), p.accusations.end(),
-                   [](const Accusation& a, const Accusation& b) { return a.log_weight > b.log_weight; });
-}
-
-const Proof* proof_of(const std::vector<Proof>& proofs, const std::vector<int>& suspects) {
-  for (const Proof& p : proofs)
-    if (p.accusation.explanation.suspects == suspects) return &p;
-  return nullptr;
-}
-
-std::vector<FoundEffect> effects_of(const Ruling& ruling, const Posterior& p, const std::vector<Suspect>& suspects,
-                                    int keys) {
-  std::vector<FoundEffect> effects;
-  for (const std::string& name : ruling.names) {
-    FoundEffect effect{name, NameKind::kPhysics, {}, p.inclusion(suspects, name)};
-    for (const Accusation& a : p.accusations) {  // the likeliest that names it
-      if (!names_of(a, suspects).contains(name)) continue;
-      for (const int s : a.explanation.suspects) {
-        const Suspect& suspect = suspects[static_cast<std::size_t>(s)];
-        if (suspect.name != name) continue;
-        effect.kind = kind_of(suspect);
-        effect.parameters.push_back(strength_in_units(suspect, a.explanation, keys + s));
-        if (suspect.turns_with_drum && name != "speed_ripple")
-          effect.parameters.push_back({"lifters", "", {double(a.lifter), kNotGiven}});
-      }
-      break;
-    }
-    effects.push_back(std::move(effect));
-  }
-  std::stable_sort(effects.begin(), effects.end(),
-                   [](const FoundEffect& a, const FoundEffect& b) { return a.probability > b.probability; });
-  return effects;
+Progress share_of(const Progress& progress, double from, double to) {
+  if (!progress) return {};
+  return [progress, from, to](double done) { progress(from + done * (to - from)); };
 }
 
 }  // namespace
 
 Diagnosis find_out(const DiagnosisRequest& request, const MillWith& mill_with, const Progress& progress) {
-  const std::vector<Scene> scenes = scenes_of(request);
+  std::vector<Scene> scenes = scenes_of(request);
+  const int ripple = order_of_ripple(request.measurements);
+  std::vector<Clue> clues;
+  for (Scene& scene : scenes) tell_ripple(scene, ripple, clues);
   const std::vector<Suspect>& suspects = scenes.front().suspects;
   const int keys = static_cast<int>(request.uncertain.size());
   std::vector<Fitted> fitted;
   for (std::size_t i = 0; i < scenes.size(); ++i)
     if (!scenes[i].measurement->experiment.hold_out)
       fitted.push_back(fit(request.conditions[fitted.size()], scenes[i], i));
-  const Case of = case_of(fitted, scenes, request.witnesses);
-  Posterior posterior = weigh(of);
-
-  // The likeliest, and that nothing is hidden, are put to the proof; what that shows puts the polynomial right.
-  std::vector<Accusation> tried(
-      posterior.accusations.begin(),
-      posterior.accusations.begin() + static_cast<std::ptrdiff_t>(std::min(kProven, posterior.accusations.size())));
-  const auto nobody = std::find_if(posterior.accusations.begin(), posterior.accusations.end(),
-                                   [](const Accusation& a) { return a.explanation.suspects.empty(); });
-  if (std::none_of(tried.begin(), tried.end(), [](const Accusation& a) { return a.explanation.suspects.empty(); }))
-    tried.push_back(*nobody);
-  std::vector<Proof> proofs;
+  Case of = case_of(fitted, scenes);
+  of.clues = std::move(clues);
   Diagnosis d;
-  for (std::size_t i = 0; i < tried.size(); ++i) {
-    proofs.push_back(prove(tried[i], scenes, request, mill_with, share_of(progress, i, tried.size())));
-    reconsider(proofs.back(), fitted, scenes, of);
-    d.simulations += static_cast<int>(scenes.size() * request.seeds);
+  for (const Measurement& m : request.measurements) {
+    const std::vector<ExactCheck> checks = exact_checks(m);
+    for (const ExactCheck& c : checks)
+      d.checks.push_back({c.experiment, c.name, c.unit, c.found, c.expected, c.se, c.z, c.says});
+    if (m.experiment.hold_out) continue;
+    for (Clue& clue : clues_of(checks, suspects)) of.clues.push_back(std::move(clue));
   }
-  sort_again(posterior, proofs);
+  d.alike = alike(of.by_lifter.front(), suspects);
 
+  const Bench bench{&scenes, &request.uncertain, &mill_with, request.seeds};
+  Court court(scenes, fitted, of, bench, progress);
+  court.hear();
+  const Posterior& posterior = court.posterior();
   const Ruling ruling = rule(posterior, suspects);
   d.finding = ruling.finding;
-  d.ranking = ranking_of(posterior, suspects, keys);
+  std::vector<std::string> experiments;  // fitted
+  for (const Fitted& f : fitted) experiments.push_back(scenes[f.scene].measurement->experiment.name);
+  d.ranking = ranking_of(posterior, suspects, keys, experiments);
   d.effects = effects_of(ruling, posterior, suspects, keys);
-  const Proof* before = proof_of(proofs, {});
+
+  Proof* const before = court.proof_of({});
   const bool added = ruling.finding == Finding::kMissingEffect || ruling.finding == Finding::kMeasurementArtefact;
-  const Proof *after = before, *runner_up = nullptr;
+  Proof *after = added ? court.prove(ruling.names) : before, *runner_up = nullptr;
   for (const Accusation& a : posterior.accusations) {
-    const Proof* proof = proof_of(proofs, a.explanation.suspects);
-    if (proof == nullptr) continue;
-    if (added && after == before && names_of(a, suspects) == ruling.names)
-      after = proof;
-    else if (runner_up == nullptr && !a.explanation.suspects.empty() && names_of(a, suspects) != ruling.names)
-      runner_up = proof;
+    Proof* const proof = court.proof_of(a.explanation.suspects);
+    if (proof == nullptr || a.explanation.suspects.empty() || names_of(a, suspects) == ruling.names) continue;
+    runner_up = proof;
+    break;
   }
+  std::vector<Proof*> shown{before};
+  if (after != before) shown.push_back(after);
+  if (runner_up != nullptr) shown.push_back(runner_up);
+  court.cross_examine(shown);
   if (runner_up != nullptr)
     for (const std::string& name : names_of(runner_up->accusation, suspects))
       d.runner_up += (d.runner_up.empty() ? "" : " + ") + name;
-  Account(scenes, *before, *after, runner_up).fill(d);
+  give_account(d, scenes, *before, *after, runner_up);
+  for (const Scene& scene : scenes) {
+    d.experiments.push_back(described(*scene.measurement));
+    d.experiments.back().before = sets_of(scene, request.uncertain, before->model);
+  }
+  d.simulations = static_cast<int>(court.simulations());
+  if (d.finding == Finding::kAmbiguous)
+    d.next = what_next(posterior, request.conditions, fitted, bench, share_of(progress, kShownShare, 1));
 
   const Explanation& believed = after->accusation.explanation;
   for (int k = 0; k < keys; ++k) {

@@ -11,8 +11,7 @@ struct DiagnosisRequest {
   std::vector<UncertainKey> uncertain;
   std::vector<Condition> conditions;  // of each measurement that is not held out, in their order, with its library
   std::vector<double> middle;         // of the uncertain keys, in MILL.toml
-  std::vector<Witness> witnesses;
-  std::size_t seeds = 8;  // runs of each experiment and model, to prove it
+  std::size_t seeds = 6;              // runs of each experiment and model, to prove it
 };
 
 // Throws InputError where the data do not allow any diagnosis. `progress`: share of the proof's simulations.

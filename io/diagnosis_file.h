@@ -27,4 +27,9 @@ void write_diagnosis_page(const std::filesystem::path& path, const Diagnosis& di
 // agreement or an unknown effect changes nothing.
 std::string repaired_mill(const std::string& mill_toml, const std::string& name, const Diagnosis& diagnosis);
 
+// model_tabulated.toml: the same text with laws found by regression (`sets`, as --set takes them) and the uncertain
+// keys as they were refitted without them.
+std::string tabulated_mill(const std::string& mill_toml, const std::string& name, const Diagnosis& diagnosis,
+                           const std::vector<std::string>& sets);
+
 }  // namespace tumble::io

@@ -78,7 +78,7 @@ Plot torque_plot(const TorqueCurve& t) {
             .y_label = "torque of one slice, N m"};
   plot.series = {{.label = "before", .x = t.x, .y = t.before, .se = t.before_se, .dashed = true, .colour = kBefore},
                  {.label = "after", .x = t.x, .y = t.after, .se = t.after_se, .colour = kAfter},
-                 {.label = "measured", .x = t.x, .y = t.measured, .colour = kMeasured}};
+                 {.label = "measured", .x = t.x, .y = t.measured, .se = t.measured_se, .colour = kMeasured}};
   std::erase_if(plot.series, [](const PlotSeries& s) { return s.y.empty(); });
   return plot;
 }
@@ -156,6 +156,8 @@ PageSection law_section(const Diagnosis& d) {
     section.plots.push_back(std::move(plot));
   }
   for (const std::string& found : d.found_laws) section.paragraphs.push_back("Not on the list: " + found);
+  if (!d.model_tabulated_toml.empty())
+    section.paragraphs.emplace_back("model_tabulated.toml is the mill with what is beyond the model’s laws as tables.");
   return section;
 }
 

@@ -213,6 +213,26 @@ class Editor {
   std::string text_;
 };
 
+// The text with these changes, or the mill written anew where they cannot be put between its lines.
+std::string with_changes(const std::string& mill_toml, const std::string& name, const std::vector<Change>& changes,
+                         const std::vector<std::string>& remarks = {}) {
+  std::vector<std::string> sets;
+  for (const Change& change : changes) sets.push_back(change.key + "=" + change.value);
+  const Config meant = with_sets(parse_config(mill_toml, name), sets);
+  Editor editor(mill_toml);
+  bool right = true;
+  try {
+    for (const Change& change : changes) editor.set(change);
+    right = to_toml(parse_config(editor.text(), name)) == to_toml(meant);
+  } catch (const std::exception&) {  // an edit made it no TOML
+    right = false;
+  }
+  if (!right)
+    editor = Editor("# Written anew: what was found could not be written between the lines.\n" + to_toml(meant));
+  editor.end_with(remarks);
+  return editor.text();
+}
+
 }  // namespace
 
 std::string repaired_mill(const std::string& mill_toml, const std::string& name, const Diagnosis& d) {
@@ -232,9 +252,6 @@ std::string repaired_mill(const std::string& mill_toml, const std::string& name,
   if (!changes.empty())
     for (Change& change : refitted(d.keys)) changes.push_back(std::move(change));
 
-  std::vector<std::string> sets;
-  for (const Change& change : changes) sets.push_back(change.key + "=" + change.value);
-  const Config meant = with_sets(mill, sets);
   std::vector<std::string> remarks;
   for (const FoundEffect& rival : rivals) {
     std::string instead;
@@ -244,19 +261,17 @@ std::string repaired_mill(const std::string& mill_toml, const std::string& name,
                                   probability_in_words(rival.probability),
                                   instead.empty() ? "" : "; in its place:" + instead));
   }
+  return with_changes(mill_toml, name, changes, remarks);
+}
 
-  Editor editor(mill_toml);
-  bool right = true;
-  try {
-    for (const Change& change : changes) editor.set(change);
-    right = to_toml(parse_config(editor.text(), name)) == to_toml(meant);
-  } catch (const std::exception&) {  // an edit made it no TOML
-    right = false;
+std::string tabulated_mill(const std::string& mill_toml, const std::string& name, const Diagnosis& d,
+                           const std::vector<std::string>& sets) {
+  std::vector<Change> changes = refitted(d.keys);
+  for (const std::string& set : sets) {
+    const auto equals = set.find('=');
+    changes.push_back({set.substr(0, equals), set.substr(equals + 1), "by regression"});
   }
-  if (!right)
-    editor = Editor("# Written anew: what was found could not be written between the lines.\n" + to_toml(meant));
-  editor.end_with(remarks);
-  return editor.text();
+  return with_changes(mill_toml, name, changes);
 }
 
 }  // namespace tumble::io

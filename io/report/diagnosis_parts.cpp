@@ -6,6 +6,7 @@
 #include <array>
 #include <cctype>
 #include <cmath>
+#include <map>
 #include <sstream>
 
 #include "core/lifter_section.h"
@@ -441,6 +442,28 @@ std::string proof_html(const Diagnosis& d) {
   return out + "</section>\n";
 }
 
+// Each pair once, at the name that most pairs have.
+std::string alike_html(std::vector<std::vector<std::string>> pairs) {
+  std::string out;
+  while (!pairs.empty()) {
+    std::map<std::string, int> count;
+    for (const auto& pair : pairs)
+      for (const std::string& name : pair) ++count[name];
+    const std::string& most = std::max_element(count.begin(), count.end(), [](const auto& a, const auto& b) {
+                                return a.second < b.second;
+                              })->first;
+    std::vector<std::string> others;
+    std::erase_if(pairs, [&](const auto& pair) {
+      if (std::find(pair.begin(), pair.end(), most) == pair.end()) return false;
+      for (const std::string& name : pair)
+        if (name != most) others.push_back(name);
+      return true;
+    });
+    out += "<li>" + escaped(with_capital(joined({most}, "")) + ": " + joined(others, ", ")) + "</li>";
+  }
+  return out;
+}
+
 std::string suspects_html(const Diagnosis& d) {
   if (d.ranking.empty()) return "";
   PageTable ruled_out;
@@ -453,8 +476,7 @@ std::string suspects_html(const Diagnosis& d) {
       "Gap left: what remains if it alone is added; 1 is agreement.</p>\n";
   if (!ruled_out.rows.empty()) out += table_inside(std::move(ruled_out));
   if (!d.alike.empty()) {
-    out += "<h3>What such data cannot tell apart</h3>\n<ul class=\"plain-list\">";
-    for (const auto& names : d.alike) out += "<li>" + escaped(joined(names, " – ")) + "</li>";
+    out += "<h3>What such data cannot tell apart</h3>\n<ul class=\"plain-list\">" + alike_html(d.alike);
     out +=
         "</ul>\n<p class=\"note\">Known before the data were looked at: from what was measured, and how "
         "precisely.</p>\n";

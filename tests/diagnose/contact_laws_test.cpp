@@ -106,7 +106,7 @@ TEST(ContactLaws, OfTheModelItselfAreTheModels) {
     EXPECT_LT(std::abs(a.value[i] - b.value[i]), 4 * a.se[i] + 0.005) << name_of_law_number(i);
   }
   const Config model = mill();
-  const Watched all[] = {{&noisy.events(), &model}};
+  const SeenExperiment all[] = {{&noisy.events(), &model}};
   EXPECT_TRUE(found_laws(all).empty());
 
   const Observer wrong{0.01, 1 * kPi / 180, -0.01};
@@ -149,7 +149,7 @@ TEST(ContactLaws, ShowWhatTheModelLacks) {
   EXPECT_EQ(tables.back().substr(0, 36), "effects.tabulated_drag.coefficient=[");
   EXPECT_NEAR(std::stod(tables.back().substr(36)), 6 * kPi * viscosity * 0.011, 0.01);  // the slowest are least sure
 
-  const Watched all[] = {{&seen.events(), &model}};
+  const SeenExperiment all[] = {{&seen.events(), &model}};
   bool braked = false;
   for (const FoundLaw& f : found_laws(all)) {
     if (f.of != "acceleration in flight" || f.term != "v") continue;
@@ -194,7 +194,7 @@ TEST(ContactLaws, FindATermThatNoEffectHas) {
     }
     laws.add(frame * dt, 0, seen);
   }
-  const Watched all[] = {{&laws.events(), &model}};
+  const SeenExperiment all[] = {{&laws.events(), &model}};
   const std::vector<FoundLaw> found = found_laws(all);
   ASSERT_EQ(found.size(), 1u);
   EXPECT_EQ(found[0].term, "spin z x v");

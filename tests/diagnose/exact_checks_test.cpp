@@ -32,7 +32,7 @@ TEST(ExactChecks, AreQuietAndHonestWhereNothingIsHidden) {
     for (const ExactCheck& c : exact_checks(measure(plain(), {}, 100 + i))) {
       z[c.name].push_back(c.z);
       EXPECT_LT(std::abs(c.z), 4) << c.says;
-      EXPECT_FALSE(c.is_clear() && c.names.empty());
+      EXPECT_FALSE(c.is_clear() && c.moved_by.empty());
     }
   for (const char* name :
        {"mill_speed", "speed_ripple", "touching_balls", "shell_radius", "mill_centre_x", "ball_count", "ball_mix",
@@ -58,7 +58,7 @@ TEST(ExactChecks, TellHowFarAnArtefactGoes) {
     ASSERT_TRUE(checks.contains(check)) << check;
     const ExactCheck& c = checks.at(check);
     EXPECT_NEAR(c.strength, strength, 3 * c.strength_se) << c.says;
-    EXPECT_THAT(c.names, Contains(suspect));
+    EXPECT_THAT(c.moved_by, Contains(testing::Field(&MovedBy::suspect, suspect)));
   };
   tells("touching_balls", "camera_scale", 0.012);
   tells("shell_radius", "camera_scale", 0.012);

@@ -18,7 +18,7 @@ class MadeUpMill {
  public:
   static constexpr std::size_t kNumbers = 60;
 
-  MadeUpMill() : suspects_(3) {
+  MadeUpMill() : suspects_(4) {
     suspects_[0].name = "bend";
     suspects_[0].sets.push_back({"bend", 0, 1});
     suspects_[1].name = "twist";
@@ -28,6 +28,10 @@ class MadeUpMill {
     suspects_[2].kind = SuspectKind::kArtefact;
     suspects_[2].low = -1.5;
     suspects_[2].observer.scale = 0.02;
+    suspects_[3].name = "torque_offset";  // which nothing shows where there is no torque
+    suspects_[3].kind = SuspectKind::kArtefact;
+    suspects_[3].low = -1.5;
+    suspects_[3].torque_offset = 0.036;
 
     Random random(5);
     std::vector<SignatureRun> runs;
@@ -43,7 +47,7 @@ class MadeUpMill {
     for (const SignatureRun& r : runs) all.push_back(&r);
     std::vector<std::size_t> chosen(kNumbers);
     for (std::size_t i = 0; i < kNumbers; ++i) chosen[i] = i;
-    response_ = std::make_unique<Response>(all, suspects_, chosen, std::vector<double>(kNumbers, 0), kSpans[0]);
+    response_ = std::make_unique<Response>(all, suspects_, chosen, std::vector<double>(kNumbers, 0), kSpans[0], 0);
   }
 
   // `stranger`: strength of what is on nobody's list. Keys not given: as likely as they are.

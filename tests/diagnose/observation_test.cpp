@@ -8,6 +8,7 @@
 #include "core/random.h"
 #include "core/units.h"
 #include "diagnose/free_flight.h"
+#include "diagnose/tracking_noise.h"
 
 namespace tumble::diagnose {
 namespace {
@@ -36,13 +37,12 @@ double sum_of(const Observation& seen, const ObservationLayout& layout, Observab
   return std::accumulate(first, first + static_cast<long>(layout.count(o)), 0.0);
 }
 
-TEST(Observation, AreasAndSpinsAddUpToTheCharge) {
+TEST(Observation, SharesAndSpinsAddUpToTheCharge) {
   const ObservationLayout layout(18);
   Observation seen;
   carried(layout, {{0.004, {}}}).finish(0, seen);
-  const double cell = 2 * kRadius / kCells, area = 40 * kPi * kBall * kBall / (cell * cell);
-  EXPECT_NEAR(sum_of(seen, layout, Observable::kOccupancy), area, 1e-9 * area);
-  EXPECT_NEAR(sum_of(seen, layout, Observable::kSpin), kOmega * area, 1e-9 * area);
+  EXPECT_NEAR(sum_of(seen, layout, Observable::kOccupancy), 1, 1e-9);
+  EXPECT_NEAR(sum_of(seen, layout, Observable::kSpin), kOmega, 1e-9 * kOmega);
 }
 
 TEST(Observation, CarriedBallsMoveAsTheDrumAndNotAgainstIt) {
@@ -52,7 +52,7 @@ TEST(Observation, CarriedBallsMoveAsTheDrumAndNotAgainstIt) {
   const std::size_t cells = layout.cells.size();
   for (std::size_t k = 0; k < cells; ++k) {
     const double area = seen.value[layout.first(Observable::kOccupancy) + k];
-    if (area < 0.05) continue;
+    if (area < 0.003) continue;
     // Shares of balls that are up to a cell away: the mean place is within half a cell of the middle.
     const double tolerance = 0.5 * kOmega * 2 * kRadius / kCells;
     EXPECT_NEAR(seen.value[layout.first(Observable::kMomentum) + k] / area, -kOmega * kRadius * layout.cells[k].y,
@@ -113,14 +113,49 @@ TEST(Observation, ObserversErrAsTheySay) {
     EXPECT_NEAR(slow.value[momentum + k] * 1.02, right.value[momentum + k], 1e-3);
 }
 
-TEST(Observation, LostBallsDoNotBlurVelocities) {
+TEST(Observation, LostBallsAreNoSmallerCharge) {
   const ObservationLayout layout(18);
   Observation all, some;
   carried(layout, {{0.004, {}}}).finish(0, all);
   carried(layout, {{0.004, {}}}, 0.1).finish(0, some);
-  const double share = sum_of(some, layout, Observable::kOccupancy) / sum_of(all, layout, Observable::kOccupancy);
-  EXPECT_NEAR(share, std::pow(0.9, 3), 0.02);  // seen before, at and after
-  EXPECT_NEAR(sum_of(some, layout, Observable::kSpin) / sum_of(all, layout, Observable::kSpin), share, 1e-9);
+  for (const Observable o : {Observable::kOccupancy, Observable::kAgitation, Observable::kSpin})
+    EXPECT_NEAR(sum_of(some, layout, o), sum_of(all, layout, o), 0.02 * std::abs(sum_of(all, layout, o))) << name_of(o);
+}
+
+// Balls that lie on the tips of the lifters, where pockets end: seen with an error or without, they count as many.
+TEST(Observation, NoiseDoesNotEmptyPockets) {
+  const ObservationLayout layout(18);
+  const auto filled = [&](double noise) {
+    Random random(9);
+    MapSums sums(layout, kRadius, kTip, kBall, {{0.004, {}}});
+    for (int frame = 0; frame < 600; ++frame) {
+      std::vector<Sighting> balls;
+      for (int i = 0; i < 36; ++i) {
+        const double r = kTip - kBall + 1e-5 + noise * gaussian(random), a = 2 * kPi * (i + 0.5) / 36;
+        balls.push_back({i, r * std::cos(a), r * std::sin(a), kBall, 0});
+      }
+      sums.add(frame / 250.0, 0, balls);
+    }
+    Observation seen;
+    sums.finish(0, seen);
+    return sum_of(seen, layout, Observable::kPockets);
+  };
+  EXPECT_NEAR(filled(3e-4), filled(0), 0.01 * filled(0));
+}
+
+TEST(TrackingNoise, IsToldFromWhatBallsDo) {
+  Random random(4);
+  std::vector<SeenFrame> frames;
+  for (int f = 0; f < 100; ++f) {
+    frames.push_back({f / 250.0, 0, {}});
+    for (int i = 0; i < 10; ++i) {
+      const double a = i + 4 * frames.back().time;
+      frames.back().balls.push_back(
+          {i, 0.2 * std::cos(a) + 3e-4 * gaussian(random), 0.2 * std::sin(a) + 3e-4 * gaussian(random), kBall, 0});
+    }
+  }
+  EXPECT_NEAR(noise_of_places(frames), 3e-4, 0.3e-4);
+  EXPECT_NEAR(noise_of_places(noisier(frames, 4e-4)), 5e-4, 0.5e-4);
 }
 
 // Thrown balls with linear drag, some of which fly into another that hangs in the air.

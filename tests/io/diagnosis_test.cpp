@@ -68,6 +68,20 @@ Diagnosis with_everything() {
   return d;
 }
 
+TEST(TabulatedMill, HasTheTablesAndTheRefittedKeysAndAllElseAsItWas) {
+  Diagnosis d = missing({}, Finding::kUnknownEffect);
+  d.keys = {{"contact.friction", 0.2, 0.05, {0.231, 0.01}}};
+  const std::string text =
+      tabulated_mill(kMill, "mill.toml", d,
+                     {"effects.tabulated_drag.speed=[0, 1, 2]", "effects.tabulated_drag.coefficient=[0.01, 0.02, 0.03]",
+                      "effects.fluid_drag.viscosity=0"});
+  EXPECT_THAT(text, HasSubstr("# Ours, in the hall.\n"));
+  const Config c = parse_config(text, "model_tabulated.toml");
+  EXPECT_EQ(c.contact.friction, 0.231);
+  EXPECT_EQ(c.effects.at("tabulated_drag").at("coefficient"), (std::vector<double>{0.01, 0.02, 0.03}));
+  EXPECT_EQ(repaired_mill(kMill, "mill.toml", d), kMill) << "the verdict stays unknown_effect";
+}
+
 TEST(DiagnosisJson, HasTheMembersOthersRelyOn) {
   const Json j = Json::parse(diagnosis_json(with_everything()));
   EXPECT_EQ(j["verdict"], "missing_effect");

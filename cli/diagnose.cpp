@@ -1,0 +1,188 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <map>
+#include <memory>
+
+#include "cli/diagnosed_laws.h"
+#include "cli/diagnosis_runs.h"
+#include "cli/measurements.h"
+#include "cli/options.h"
+#include "cli/verbs.h"
+#include "core/error.h"
+#include "core/parallel_for.h"
+#include "core/version.h"
+#include "diagnose/verdict.h"
+#include "io/chunk_store.h"
+#include "io/config_file.h"
+#include "io/config_keys.h"
+#include "io/diagnosis_file.h"
+#include "io/diagnosis_words.h"
+#include "io/experiments_file.h"
+#include "io/output.h"
+#include "io/text_file.h"
+
+namespace tumble::cli {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr std::size_t kLargestMiB = 4;
+
+struct Options : CommonOptions {
+  fs::path config, measured, output, library;
+  std::string engine = "local";
+  std::size_t blocks = diagnose::kGoodBlocks;
+  std::size_t seeds = 6;
+};
+
+fs::path library_folder(const Options& o) {
+  if (!o.library.empty()) return o.library;
+  if (const char* cache = std::getenv("XDG_CACHE_HOME"); cache && *cache) return fs::path(cache) / "tumble";
+  if (const char* home = std::getenv("HOME"); home && *home) return fs::path(home) / ".cache" / "tumble";
+  throw InputError("--library", "is not given, and neither XDG_CACHE_HOME nor HOME says where a cache may be; give it");
+}
+
+std::vector<double> values_of(const Config& mill, const std::vector<UncertainKey>& uncertain) {
+  std::vector<double> values;
+  for (const UncertainKey& u : uncertain) {
+    values.push_back(io::number_at(mill, u.key));
+    if (std::isnan(values.back()))
+      throw InputError(u.place,
+                       "is uncertain about a value that MILL.toml does not give; give it there, or remove this");
+  }
+  return values;
+}
+
+// "speed 0.6, speed 0.8: no spin_rad_s: spin is lost": the same of several experiments, said once.
+std::vector<std::string> said_once(const std::vector<std::string>& notes, const Experiments& experiments) {
+  std::vector<std::pair<std::string, std::string>> of;  // what, and of whom
+  for (const std::string& note : notes) {
+    std::string who, what = note;
+    for (const Experiment& e : experiments.list)
+      if (note.starts_with(e.name + ": ")) who = e.name, what = note.substr(e.name.size() + 2);
+    const auto at = std::find_if(of.begin(), of.end(), [&](const auto& known) { return known.first == what; });
+    if (at == of.end())
+      of.emplace_back(what, who);
+    else
+      at->second += ", " + who;
+  }
+  std::vector<std::string> said;
+  for (const auto& [what, who] : of) said.push_back(who.empty() ? what : who + ": " + what);
+  return said;
+}
+
+// The library goes a little to both sides of what MILL.toml has, however wide the range.
+void check_room(const Config& mill, const UncertainKey& u, double value) {
+  constexpr double kLittle = 0.1;
+  for (const double away : {-kLittle * u.sd, kLittle * u.sd}) try {
+      io::with_sets(mill, {fmt::format("{}={}", u.key, value + away)});
+    } catch (const InputError& e) {
+      throw InputError(u.place,
+                       fmt::format("is uncertain about {:g}, which leaves no room on one side ({}); give MILL.toml "
+                                   "a value within the range, or leave this out",
+                                   value, e.what()));
+    }
+}
+
+void diagnose_mill(const Options& o) {
+  limit_threads(o.threads);
+  if (o.engine == "slurm")
+    throw InputError("--engine", "slurm is not in this version; local uses all cores of this machine");
+  if (o.engine != "local") throw InputError("--engine", "is \"" + o.engine + "\"; give local");
+  const Config mill = io::read_config(o.config);
+  check_complete(mill);
+  const Experiments experiments = io::read_experiments(o.measured);
+  const std::vector<double> middle = values_of(mill, experiments.uncertain);
+  for (std::size_t k = 0; k < middle.size(); ++k) check_room(mill, experiments.uncertain[k], middle[k]);
+  const fs::path verdict = o.output / "verdict.json", model = o.output / "model.toml", page = o.output / "report.html",
+                 tabulated = o.output / "model_tabulated.toml", film = o.output / "film.mp4";
+  std::error_code error;
+  if (fs::is_directory(o.output, error)) {  // shows before films are measured, which takes long
+    for (const fs::path& file : {model, verdict, page, tabulated, film}) {
+      io::check_output_file(file, o.force);
+      io::check_not_input(file, o.config);
+      io::check_not_input(file, o.measured);
+      for (const Experiment& e : experiments.list) io::check_not_input(file, e.film);
+    }
+    DiagnosisRuns::check(o.output, o.force);
+  }
+  std::vector<std::string> notes;
+  diagnose::DiagnosisRequest request;
+  request.measurements = read_measurements(experiments, mill, o.output / "films", o, notes);
+  request.uncertain = experiments.uncertain;
+  request.middle = middle;
+  request.seeds = o.seeds;
+  notes = said_once(notes, experiments);
+  io::make_output_folder(o.output);
+
+  ProgressLine line(o, "library of signatures", "what was simulated is kept; the same command goes on with it");
+  std::vector<io::ChunkStore> stores;
+  for (const diagnose::Measurement& m : request.measurements) {
+    if (m.experiment.hold_out) continue;
+    request.conditions.push_back(diagnose::make_condition(
+        m.config, request.uncertain, values_of(m.config, request.uncertain), io::to_toml(diagnose::bare(m.config))));
+    stores.emplace_back(library_folder(o), request.conditions.back().definition);
+  }
+  const diagnose::MillWith mill_with = [](const Config& config, const std::vector<std::string>& sets) {
+    return io::with_sets(config, sets);
+  };
+  diagnose::LibrarySink sink;
+  sink.read = [&](std::size_t c, std::size_t chunk, auto& rows) { return stores[c].read(chunk, rows); };
+  sink.write = [&](std::size_t c, std::size_t chunk, const auto& rows) { stores[c].write(chunk, rows); };
+  sink.progress = line.callback();
+  const std::size_t simulated =
+      diagnose::build_library(request.conditions, request.uncertain, o.blocks, mill_with, sink);
+
+  ProgressLine proving(o, "putting to the proof", "the library is kept; the same command goes on from it");
+  Diagnosis d = diagnose::find_out(request, mill_with, proving.callback());
+  d.mill = o.config.string();
+  d.measured = o.measured.string();
+  d.simulations += static_cast<int>(simulated);
+  d.seconds = line.seconds();
+  d.caveats.insert(d.caveats.end(), notes.begin(), notes.end());
+  d.mill_toml = io::read_text(o.config, "a MILL.toml", kLargestMiB);
+  add_laws(d, request.measurements);
+  d.model_toml = io::repaired_mill(d.mill_toml, o.config.string(), d);
+  DiagnosisRuns runs(o.output, d, request.measurements, o);
+  d.torque = runs.torque();
+  d.sentence = io::diagnosis_sentence(d);
+  const std::vector<io::DiagnosisFilm> films = runs.film(film);
+
+  if (films.empty()) fs::remove(film, error);  // of a diagnosis that this one replaces, as is model_tabulated.toml
+  if (d.model_tabulated_toml.empty()) fs::remove(tabulated, error);
+  runs.keep();
+  io::write_text(model, d.model_toml);
+  if (!d.model_tabulated_toml.empty()) io::write_text(tabulated, d.model_tabulated_toml);
+  io::write_diagnosis_page(page, d, films);
+  io::write_text(verdict, io::diagnosis_json(d));  // last: where it stands, the diagnosis is complete
+  for (const std::string& note : notes) say(o, "note: " + note);
+  say(o, d.sentence);
+  if (o.json) print(io::diagnosis_json(d));
+}
+
+}  // namespace
+
+void add_diagnose(CLI::App& app) {
+  auto o = std::make_shared<Options>();
+  CLI::App* verb =
+      app.add_subcommand("diagnose", "Find where simulation and measurement disagree, and name what is missing");
+  verb->add_option("config", o->config, "MILL.toml")->required();
+  verb->add_option("--measured", o->measured, "EXPERIMENTS.toml")->required();
+  verb->add_option("-o,--output", o->output, "Folder for report.html, verdict.json, model.toml, runs")->required();
+  verb->add_option("--library", o->library,
+                   "Folder of the library of signatures (default: $XDG_CACHE_HOME/tumble or ~/.cache/tumble)");
+  verb->add_option("--engine", o->engine, "Where simulations run: local")->capture_default_str();
+  verb->add_option("--blocks", o->blocks, "Size of the library: fewer blocks are quicker and tell less")
+      ->check(CLI::Range(2, 100))
+      ->capture_default_str();
+  verb->add_option("--seeds", o->seeds, "Simulations of each experiment to prove each model")
+      ->check(CLI::Range(4, 1000))
+      ->capture_default_str();
+  add_common(*verb, *o);
+  verb->footer("Example: tumble diagnose mill.toml --measured experiments.toml -o diagnosis");
+  verb->callback([o] { diagnose_mill(*o); });
+}
+
+}  // namespace tumble::cli
