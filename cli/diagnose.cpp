@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <map>
 #include <memory>
 
 #include "cli/diagnosed_laws.h"
@@ -13,7 +12,6 @@
 #include "cli/verbs.h"
 #include "core/error.h"
 #include "core/parallel_for.h"
-#include "core/version.h"
 #include "diagnose/verdict.h"
 #include "io/chunk_store.h"
 #include "io/config_file.h"

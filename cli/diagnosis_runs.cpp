@@ -86,8 +86,6 @@ ChargeMotion turning(const fs::path& file) {
   return motion;
 }
 
-double or_nothing(double error) { return std::isnan(error) ? 0 : error; }
-
 }  // namespace
 
 void DiagnosisRuns::check(const fs::path& folder, bool force) {

@@ -64,8 +64,6 @@ void give_radii(std::vector<SeenFrame>& frames, const Config& config, const std:
         "sizes are lost");
 }
 
-double or_nothing(double error) { return std::isnan(error) ? 0 : error; }
-
 // What MILL.toml's [measurement] knows to be wrong with places and times.
 void put_right(std::vector<SeenFrame>& frames, const MeasurementErrors& wrong) {
   const double longer = 1 + or_nothing(wrong.camera_scale), slower = 1 + or_nothing(wrong.frame_clock),

@@ -12,6 +12,7 @@
 namespace tumble {
 
 inline constexpr double kNotGiven = std::numeric_limits<double>::quiet_NaN();
+inline double or_nothing(double value) { return value == value ? value : 0; }  // 0 where it is not given
 
 enum class LifterProfile { kNone, kRectangle, kTriangle, kTrapezoid, kWave, kPolygon, kSwivel };
 enum class ContactLaw { kLinear, kHertz };

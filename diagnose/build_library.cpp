@@ -44,7 +44,7 @@ Run mill_of(const Condition& condition, const std::vector<UncertainKey>& keys, c
       return run;
     } catch (const InputError&) {
       if (retreat == kMostRetreats) throw;
-      for (double& u : run.uncertain) u *= 0.7;
+      for (double& u : run.uncertain) u *= kRetreat;
     }
   }
 }

@@ -31,6 +31,9 @@ struct LibrarySink {  // never called by two threads at once
 // The mill of a run: the condition's with these assignments. Throws InputError where there can be no such mill.
 using MillWith = std::function<Config(const Config& condition, const std::vector<std::string>& sets)>;
 
+// Where a mill cannot be, its uncertain keys' distances from MILL.toml become so much smaller.
+inline constexpr double kRetreat = 0.7;
+
 // Fills `runs` of all conditions with `blocks` blocks each. Chunks are simulated in an order in which all conditions
 // grow together. Returns the number of simulations that were run now.
 std::size_t build_library(std::vector<Condition>& conditions, const std::vector<UncertainKey>& uncertain,

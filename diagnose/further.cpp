@@ -27,9 +27,7 @@ std::vector<Rival> rivals_of(const Posterior& p, std::span<const Suspect> suspec
   for (const Accusation& a : p.accusations) {
     if (rivals.size() == kMostRivals || (sum > kCredible && rivals.size() > 1)) break;
     sum += a.probability;
-    std::string name;
-    for (const std::string& n : names_of(a, suspects)) name += (name.empty() ? "" : " + ") + n;
-    if (name.empty()) name = "none";
+    const std::string name = a.explanation.suspects.empty() ? "none" : joined(names_of(a, suspects));
     const auto at = std::find_if(rivals.begin(), rivals.end(), [&](const Rival& r) { return r.name == name; });
     if (at == rivals.end())
       rivals.push_back({name, a.explanation, a.probability});

@@ -95,7 +95,7 @@ Observation observe(const Measurement& m, const ObservationLayout& layout, doubl
     const auto first = static_cast<std::ptrdiff_t>(layout.first(Observable::kLaws));
     std::copy(told.value.begin(), told.value.end(), seen.value.begin() + first);
     for (std::size_t i = 0; i < told.se.size(); ++i)
-      seen.noise[static_cast<std::size_t>(first) + i] = std::isnan(told.se[i]) ? 0 : told.se[i];
+      seen.noise[static_cast<std::size_t>(first) + i] = or_nothing(told.se[i]);
     if (std::isnan(m.frames.front().mill_angle))
       for (std::size_t k = 0; k < layout.count(Observable::kPockets); ++k)
         seen.value[layout.first(Observable::kPockets) + k] = kNotGiven;
@@ -105,7 +105,7 @@ Observation observe(const Measurement& m, const ObservationLayout& layout, doubl
   if (!std::isnan(torque.value)) {
     const std::size_t at = layout.first(Observable::kTorque), closure = layout.first(Observable::kClosure);
     seen.value[at] = torque.value - torque_offset;
-    seen.noise[at] = seen.noise[closure] = std::isnan(torque.se) ? 0 : torque.se;
+    seen.noise[at] = seen.noise[closure] = or_nothing(torque.se);
     if (!m.frames.empty()) seen.value[closure] = seen.value[at] - held_by_torque(m, observer);
   }
   const std::size_t angles = layout.first(Observable::kAngles);
@@ -113,7 +113,7 @@ Observation observe(const Measurement& m, const ObservationLayout& layout, doubl
     const Estimate& angle = e.*kScalarData[k].measured;
     if (std::isnan(angle.value)) continue;
     seen.value[angles + k - 2] = angle.value + observer.rotation * 180 / kPi;
-    seen.noise[angles + k - 2] = std::isnan(angle.se) ? 0 : angle.se;
+    seen.noise[angles + k - 2] = or_nothing(angle.se);
   }
   return seen;
 }

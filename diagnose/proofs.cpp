@@ -13,7 +13,6 @@ namespace {
 constexpr double kMostlyTold = 0.95;  // of the library's runs must tell a number
 constexpr std::size_t kLeastRuns = 2;
 constexpr int kMostRetreats = 4;
-constexpr double kRetreat = 0.7;
 constexpr double kFar = 1;  // standard errors
 
 bool is_guilty(const Accusation& a, std::size_t suspect) {
@@ -105,7 +104,7 @@ std::size_t simulate(Proof& proof, const Bench& bench, bool held_out, const Prog
 Correction correction_by(const Proof& proof, const std::vector<Fitted>& fitted, const std::vector<Scene>& scenes,
                          const Correction& before) {
   Correction c;
-  c.runs = double(kLeastRuns);
+  c.runs = INFINITY;  // the fewest of any condition
   const auto keys = static_cast<Eigen::Index>(scenes.front().middle.size());
   for (const Fitted& f : fitted) {
     const Scene& scene = scenes[f.scene];
@@ -128,7 +127,7 @@ Correction correction_by(const Proof& proof, const std::vector<Fitted>& fitted, 
     }
     const Eigen::HouseholderQR<Eigen::MatrixXd> qr(slopes);
     c.directions.push_back(qr.householderQ() * Eigen::MatrixXd::Identity(slopes.rows(), slopes.cols()));
-    c.runs = f.scene == fitted.front().scene ? double(runs.seen.size()) : std::min(c.runs, double(runs.seen.size()));
+    c.runs = std::min(c.runs, double(runs.seen.size()));
   }
   if (before.runs > 0)
     for (std::size_t i = 0; i < c.shift.size(); ++i)

@@ -15,7 +15,6 @@ namespace {
 
 constexpr double kMostlyThere = 0.8;  // of the runs must show a number
 constexpr int kMostRetreats = 8;
-constexpr double kRetreat = 0.7;
 constexpr std::uint64_t kSeeds = 1u << 20;  // far from those of the library
 
 double mean_of(const std::vector<std::vector<double>>& seen, std::size_t i) {

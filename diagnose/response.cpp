@@ -251,8 +251,4 @@ Eigen::VectorXd Response::whitened(const std::vector<double>& observation) const
   return lower_.triangularView<Eigen::Lower>().solve(features_.of(observation));
 }
 
-Eigen::VectorXd Response::whitened_run(std::size_t run, const std::vector<double>& observation) const {
-  return lower_.triangularView<Eigen::Lower>().solve(features_.of_run(run, observation));
-}
-
 }  // namespace tumble::diagnose

@@ -24,7 +24,6 @@ class Response {
   Expected at(const Eigen::VectorXd& places) const;
 
   Eigen::VectorXd whitened(const std::vector<double>& observation) const;  // features in the same units
-  Eigen::VectorXd whitened_run(std::size_t run, const std::vector<double>& observation) const;  // of the library
   const Features& features() const { return features_; }
 
   // ln of chi2 per feature, of the library's runs about the polynomial.
@@ -34,7 +33,6 @@ class Response {
   const Spread& log_misfit() const { return log_misfit_; }
   std::size_t numbers() const { return alive_; }  // features, but for those that nothing moves
   std::size_t uncertain() const { return uncertain_; }
-  std::size_t suspects() const { return terms_of_.size(); }
   double revolutions() const { return revolutions_; }  // of a run, on average
   double freedom() const { return freedom_; }          // degrees of freedom that the scatter is known by
   // Of the multivariate Student's t that one run's numbers follow about their mean: charges pack and lock in ways of

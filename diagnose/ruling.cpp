@@ -78,6 +78,8 @@ std::vector<RankedName> ranking_of(const Posterior& p, std::span<const Suspect> 
   return ranking;
 }
 
+std::string joined(const std::set<std::string>& names) { return fmt::format("{}", fmt::join(names, " + ")); }
+
 Ruling rule(const Posterior& p, std::span<const Suspect> suspects) {
   if (p.unknown > 0.5) return {Finding::kUnknownEffect, {}};
   std::vector<std::pair<std::set<std::string>, double>> sets;  // of names, likeliest first

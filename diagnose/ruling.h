@@ -11,6 +11,8 @@ namespace tumble::diagnose {
 
 std::set<std::string> names_of(const Accusation& accusation, std::span<const Suspect> suspects);
 
+std::string joined(const std::set<std::string>& names);  // "camera_scale + cohesion"
+
 struct Ruling {
   Finding finding = Finding::kAgreement;
   std::set<std::string> names;

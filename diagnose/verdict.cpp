@@ -27,8 +27,7 @@ constexpr std::size_t kMostTried = 4;   // accusations in the first round, besid
 constexpr std::size_t kTriedAgain = 2;  // in the further ones
 constexpr std::array kShares{0.55, 0.15, 0.1, 0.1};  // of the time: each round, and what is held out
 constexpr double kShownShare = 0.9;                  // then what to measure next
-constexpr double kHeard = 3;                         // ln: a witness that says less is not called
-constexpr double kLoudest = 50;                      // ln: no witness counts for more
+constexpr double kHeard = 3;                         // ln of the rarity from which a ripple is no chance
 constexpr double kRarest = 1e-30;
 
 std::vector<Scene> scenes_of(const DiagnosisRequest& r) {
@@ -75,11 +74,11 @@ DiagnosedExperiment described(const Measurement& m) {
 
 // A mill's angle tells of ripples in its speed, of any order and phase, what no map of the charge shows. The one that
 // stands out in the fitted experiments; 0 where none does.
-int order_of_ripple(const std::vector<Measurement>& measurements) {
+int order_of_ripple(const std::vector<Scene>& scenes, const std::vector<std::vector<RippleOrder>>& orders) {
   std::map<int, double> rarity;
-  for (const Measurement& m : measurements) {
-    if (m.experiment.hold_out) continue;
-    for (const RippleOrder& r : ripple_orders(m)) rarity[r.order] -= std::log(std::max(r.p, kRarest));
+  for (std::size_t i = 0; i < scenes.size(); ++i) {
+    if (scenes[i].measurement->experiment.hold_out) continue;
+    for (const RippleOrder& r : orders[i]) rarity[r.order] -= std::log(std::max(r.p, kRarest));
   }
   int order = 0;
   double most = kHeard + std::log(std::max<double>(1, double(rarity.size())));
@@ -89,10 +88,9 @@ int order_of_ripple(const std::vector<Measurement>& measurements) {
 }
 
 // The ripple that is suspected becomes the one that is seen; what its amplitude is, a clue tells.
-void tell_ripple(Scene& scene, int order, std::vector<Clue>& clues) {
+void tell_ripple(Scene& scene, const std::vector<RippleOrder>& orders, int order, std::vector<Clue>& clues) {
   const auto at = std::find_if(scene.suspects.begin(), scene.suspects.end(),
                                [](const Suspect& s) { return s.name == "speed_ripple"; });
-  const auto orders = ripple_orders(*scene.measurement);
   if (at == scene.suspects.end() || orders.empty()) return;
   const RippleOrder& r = orders[static_cast<std::size_t>(std::max(1, order) - 1)];
   if (order > 0) {
@@ -271,9 +269,11 @@ Progress share_of(const Progress& progress, double from, double to) {
 
 Diagnosis find_out(const DiagnosisRequest& request, const MillWith& mill_with, const Progress& progress) {
   std::vector<Scene> scenes = scenes_of(request);
-  const int ripple = order_of_ripple(request.measurements);
+  std::vector<std::vector<RippleOrder>> ripples;
+  for (const Scene& scene : scenes) ripples.push_back(ripple_orders(*scene.measurement));
+  const int order = order_of_ripple(scenes, ripples);
   std::vector<Clue> clues;
-  for (Scene& scene : scenes) tell_ripple(scene, ripple, clues);
+  for (std::size_t i = 0; i < scenes.size(); ++i) tell_ripple(scenes[i], ripples[i], order, clues);
   const std::vector<Suspect>& suspects = scenes.front().suspects;
   const int keys = static_cast<int>(request.uncertain.size());
   std::vector<Fitted> fitted;
@@ -316,9 +316,7 @@ Diagnosis find_out(const DiagnosisRequest& request, const MillWith& mill_with, c
   if (after != before) shown.push_back(after);
   if (runner_up != nullptr) shown.push_back(runner_up);
   court.cross_examine(shown);
-  if (runner_up != nullptr)
-    for (const std::string& name : names_of(runner_up->accusation, suspects))
-      d.runner_up += (d.runner_up.empty() ? "" : " + ") + name;
+  if (runner_up != nullptr) d.runner_up = joined(names_of(runner_up->accusation, suspects));
   give_account(d, scenes, *before, *after, runner_up);
   for (const Scene& scene : scenes) {
     d.experiments.push_back(described(*scene.measurement));
