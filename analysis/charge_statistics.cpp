@@ -53,6 +53,15 @@ void put_edges(std::span<const ChargeEdges> frames, std::span<ProfileRow> profil
   }
 }
 
+void put_edges(const ChargeEdges& of_mean, ChargeMotion& motion) {
+  motion.toe_deg.value = of_mean.toe[kHalf];
+  motion.toe_bulk_deg.value = of_mean.toe[kBulk];
+  motion.toe_outer_deg.value = of_mean.toe[kOuter];
+  motion.shoulder_deg.value = of_mean.shoulder[kHalf];
+  motion.shoulder_bulk_deg.value = of_mean.shoulder[kBulk];
+  motion.shoulder_outer_deg.value = of_mean.shoulder[kOuter];
+}
+
 double circulation_reach(const MillGeometry& geometry) { return 1.5 * geometry.mean_diameter; }
 
 ChargeStatistics::ChargeStatistics(const MillGeometry& geometry)

@@ -25,8 +25,9 @@ struct MillGeometry {
 // Of these flights, where they leave the shell of this mill and end.
 FlightAngles angles_of(std::span<const Flight> flights, const MillGeometry& geometry);
 
-// Each frame's edges into its row.
+// Each frame's edges into its row; those of the time mean, without errors, into the motion.
 void put_edges(std::span<const ChargeEdges> frames, std::span<ProfileRow> profile);
+void put_edges(const ChargeEdges& of_mean, ChargeMotion& motion);
 
 double circulation_reach(const MillGeometry& geometry);  // of the plane whose root is the centre of circulation
 

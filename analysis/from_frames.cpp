@@ -102,6 +102,37 @@ ChargeMotion measure_frames(const RunSetup& setup, const NextFrame& next, const 
   return measurer.finish();
 }
 
+struct MeansMeasurer::State {
+  Ring ring;
+  std::vector<Disc> discs;
+  RingMean mean;
+  std::vector<double> torque, closure;
+};
+
+MeansMeasurer::MeansMeasurer(const RunSetup& setup) : state_(std::make_unique<State>()) {
+  const MillGeometry geometry = geometry_of(setup, make_mill_shape(setup.config));
+  state_->ring = edge_ring(geometry.tip_radius, geometry.mean_diameter);
+  for (const double radius : setup.balls.radius) state_->discs.push_back({0, 0, radius});
+}
+
+MeansMeasurer::~MeansMeasurer() = default;
+
+void MeansMeasurer::add(const Frame& frame) {
+  State& s = *state_;
+  for (std::size_t i = 0; i < s.discs.size(); ++i) s.discs[i].x = frame.x[i], s.discs[i].y = frame.y[i];
+  s.mean.add(ring_occupancy(s.discs, s.ring), {});
+  if (!std::isnan(frame.observed.torque)) s.torque.push_back(frame.observed.torque);
+  if (!std::isnan(frame.observed.torque_closure)) s.closure.push_back(frame.observed.torque_closure);
+}
+
+ChargeMotion MeansMeasurer::finish() const {
+  ChargeMotion motion;
+  put_edges(find_edges(smooth(state_->mean.mean(), kMeanBox)), motion);
+  motion.torque = mean_of_series(state_->torque);
+  motion.torque_closure = mean_of_series(state_->closure);
+  return motion;
+}
+
 std::vector<ProfileRow> measure_edges(const RunSetup& setup, const NextFrame& next, const Progress& progress) {
   const MillGeometry geometry = geometry_of(setup, make_mill_shape(setup.config));
   const Ring ring = edge_ring(geometry.tip_radius, geometry.mean_diameter);

@@ -74,13 +74,7 @@ class Remeasured {
 
   ChargeMotion finish(const ChargeMotion& as_seen) {
     ChargeMotion motion;
-    const ChargeEdges edges = find_edges(smooth(ring_.mean(), kMeanBox));
-    motion.toe_deg.value = edges.toe[kHalf];
-    motion.toe_bulk_deg.value = edges.toe[kBulk];
-    motion.toe_outer_deg.value = edges.toe[kOuter];
-    motion.shoulder_deg.value = edges.shoulder[kHalf];
-    motion.shoulder_bulk_deg.value = edges.shoulder[kBulk];
-    motion.shoulder_outer_deg.value = edges.shoulder[kOuter];
+    put_edges(find_edges(smooth(ring_.mean(), kMeanBox)), motion);
     motion.head.value = heads_ / frames_;
     if (field_) {
       const auto centre = field_->centre_of_circulation(circulation_reach(geometry_));

@@ -53,24 +53,6 @@ std::vector<double> values_of(const Config& mill, const std::vector<UncertainKey
   return values;
 }
 
-// "speed 0.6, speed 0.8: no spin_rad_s: spin is lost": the same of several experiments, said once.
-std::vector<std::string> said_once(const std::vector<std::string>& notes, const Experiments& experiments) {
-  std::vector<std::pair<std::string, std::string>> of;  // what, and of whom
-  for (const std::string& note : notes) {
-    std::string who, what = note;
-    for (const Experiment& e : experiments.list)
-      if (note.starts_with(e.name + ": ")) who = e.name, what = note.substr(e.name.size() + 2);
-    const auto at = std::find_if(of.begin(), of.end(), [&](const auto& known) { return known.first == what; });
-    if (at == of.end())
-      of.emplace_back(what, who);
-    else
-      at->second += ", " + who;
-  }
-  std::vector<std::string> said;
-  for (const auto& [what, who] : of) said.push_back(who.empty() ? what : who + ": " + what);
-  return said;
-}
-
 // The library goes a little to both sides of what MILL.toml has, however wide the range.
 void check_room(const Config& mill, const UncertainKey& u, double value) {
   constexpr double kLittle = 0.1;
@@ -112,7 +94,6 @@ void diagnose_mill(const Options& o) {
   request.uncertain = experiments.uncertain;
   request.middle = middle;
   request.seeds = o.seeds;
-  notes = said_once(notes, experiments);
   io::make_output_folder(o.output);
 
   ProgressLine line(o, "library of signatures", "what was simulated is kept; the same command goes on with it");

@@ -259,6 +259,24 @@ void check_uncertain(const Experiments& experiments, const Config& mill) {
   }
 }
 
+// "speed 0.6, speed 0.8: no spin_rad_s: spin is lost": the same of several experiments, said once.
+std::vector<std::string> said_once(const std::vector<std::string>& notes, const Experiments& experiments) {
+  std::vector<std::pair<std::string, std::string>> of;  // what, and of whom
+  for (const std::string& note : notes) {
+    std::string who, what = note;
+    for (const Experiment& e : experiments.list)
+      if (note.starts_with(e.name + ": ")) who = e.name, what = note.substr(e.name.size() + 2);
+    const auto at = std::find_if(of.begin(), of.end(), [&](const auto& known) { return known.first == what; });
+    if (at == of.end())
+      of.emplace_back(what, who);
+    else
+      at->second += ", " + who;
+  }
+  std::vector<std::string> said;
+  for (const auto& [what, who] : of) said.push_back(who.empty() ? what : who + ": " + what);
+  return said;
+}
+
 }  // namespace
 
 std::vector<Measurement> read_measurements(const Experiments& experiments, const Config& mill, const fs::path& films,
@@ -267,16 +285,18 @@ std::vector<Measurement> read_measurements(const Experiments& experiments, const
     throw InputError(experiments.file, "holds out every experiment; leave some to fit");
   check_uncertain(experiments, mill);
   std::vector<Measurement> all;
+  std::vector<std::string> remarks;
   for (const Experiment& e : experiments.list) {
     try {
-      all.push_back(read_one(e, mill, films, options, notes));
+      all.push_back(read_one(e, mill, films, options, remarks));
     } catch (const InputError& error) {  // the file alone would not tell whose it is
       const std::string said = error.what();
       throw InputError(said.starts_with(e.place) ? "" : e.place, said);
     }
   }
   if (std::none_of(experiments.list.begin(), experiments.list.end(), [](const Experiment& e) { return e.hold_out; }))
-    notes.push_back("no experiment is held out (hold_out = true): nothing tests the prediction");
+    remarks.push_back("no experiment is held out (hold_out = true): nothing tests the prediction");
+  for (std::string& note : said_once(remarks, experiments)) notes.push_back(std::move(note));
   return all;
 }
 

@@ -106,7 +106,7 @@ class Watcher {
   RunSetup setup_;
   MillShape shape_;
   ObservationLayout layout_;
-  analysis::FrameMeasurer measurer_;
+  analysis::MeansMeasurer measurer_;
   ContactLaws laws_;
   std::vector<Observer> all_;    // first the one who does not err
   std::optional<MapSums> maps_;  // views by observer, then span

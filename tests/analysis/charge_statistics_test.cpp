@@ -139,6 +139,8 @@ TEST(MeasureEdges, AreThoseOfTheWholeMeasurement) {
       f.y.push_back(away * std::sin(angle));
     }
     f.vx = f.vy = f.angle = f.spin = std::vector<double>(setup.balls.size(), 0.0);
+    f.observed.torque = random.uniform(8, 9);
+    f.observed.torque_closure = k == 0 ? kNotGiven : random.uniform(8, 9);
   }
   const auto from_start = [&] {
     return [&, next = std::size_t{0}](Frame& frame) mutable {
@@ -147,7 +149,8 @@ TEST(MeasureEdges, AreThoseOfTheWholeMeasurement) {
       return true;
     };
   };
-  const std::vector<ProfileRow> whole = measure_frames(setup, from_start()).profile;
+  const ChargeMotion motion = measure_frames(setup, from_start());
+  const std::vector<ProfileRow>& whole = motion.profile;
   const std::vector<ProfileRow> edges = measure_edges(setup, from_start());
   ASSERT_EQ(edges.size(), whole.size());
   for (std::size_t k = 0; k < whole.size(); ++k) {
@@ -158,6 +161,13 @@ TEST(MeasureEdges, AreThoseOfTheWholeMeasurement) {
     EXPECT_EQ(edges[k].shoulder_deg, whole[k].shoulder_deg);
     EXPECT_FALSE(std::isnan(edges[k].toe_deg) || std::isnan(edges[k].shoulder_deg));
   }
+  MeansMeasurer measurer(setup);
+  for (const Frame& frame : frames) measurer.add(frame);
+  const ChargeMotion means = measurer.finish();
+  for (const auto of : {&ChargeMotion::torque, &ChargeMotion::torque_closure, &ChargeMotion::toe_deg,
+                        &ChargeMotion::toe_bulk_deg, &ChargeMotion::toe_outer_deg, &ChargeMotion::shoulder_deg,
+                        &ChargeMotion::shoulder_bulk_deg, &ChargeMotion::shoulder_outer_deg})
+    EXPECT_NEAR((means.*of).value, (motion.*of).value, 1e-9);
 }
 
 }  // namespace
