@@ -14,10 +14,63 @@ constexpr double kMostlyTold = 0.95;  // of the library's runs must tell a numbe
 constexpr std::size_t kLeastRuns = 2;
 constexpr int kMostRetreats = 4;
 constexpr double kFar = 1;  // standard errors
+// Over which a polynomial's error is much the same: of a key [standard deviations], of a strength [full strengths].
+constexpr double kKeyReach = 1, kStrengthReach = 0.5;
+// Variance of an error in the few directions in which keys and strengths could make up for it: what was simulated is
+// believed there, for all that is found hangs on it.
+constexpr double kOpen = 1;
 
 bool is_guilty(const Accusation& a, std::size_t suspect) {
   const auto& guilty = a.explanation.suspects;
   return std::find(guilty.begin(), guilty.end(), static_cast<int>(suspect)) != guilty.end();
+}
+
+// Without the observers' errors, which are computed and not simulated.
+Eigen::VectorXd simulated_places(Eigen::VectorXd places, std::span<const Suspect> suspects) {
+  const auto keys = places.size() - static_cast<Eigen::Index>(suspects.size());
+  for (std::size_t s = 0; s < suspects.size(); ++s)
+    if (!suspects[s].is_simulated()) places[keys + static_cast<Eigen::Index>(s)] = 0;
+  return places;
+}
+
+double alike(const Eigen::VectorXd& a, const Eigen::VectorXd& b, Eigen::Index keys) {
+  const Eigen::VectorXd apart = a - b;
+  return std::exp(-0.5 * (apart.head(keys).squaredNorm() / (kKeyReach * kKeyReach) +
+                          apart.tail(apart.size() - keys).squaredNorm() / (kStrengthReach * kStrengthReach)));
+}
+
+struct Kriged {
+  Eigen::VectorXd shift;
+  double variance = 0;
+};
+
+// Simple kriging: errors of this variance, alike where they lie near, seen with what chance does to a few runs.
+Kriged krige(const std::vector<FoundError>& found, const Eigen::VectorXd& at, Eigen::Index keys, double variance) {
+  const auto n = static_cast<Eigen::Index>(found.size());
+  Eigen::MatrixXd known(n, n), shifts(found.front().shift.size(), n);
+  Eigen::VectorXd near(n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const FoundError& f = found[static_cast<std::size_t>(i)];
+    for (Eigen::Index j = 0; j < n; ++j)
+      known(i, j) = variance * alike(f.places, found[static_cast<std::size_t>(j)].places, keys);
+    known(i, i) += 1 / f.runs;
+    near[i] = variance * alike(f.places, at, keys);
+    shifts.col(i) = f.shift;
+  }
+  const Eigen::VectorXd weights = known.ldlt().solve(near);
+  return {shifts * weights, variance - near.dot(weights)};
+}
+
+// Orthonormal: where the keys and the guilty move the numbers.
+Eigen::MatrixXd ways_of(const Explanation& e, const Eigen::MatrixXd& slope, int keys) {
+  Eigen::MatrixXd ways(slope.rows(), 0);
+  for (const int place : e.free) {
+    if (place >= keys && std::find(e.suspects.begin(), e.suspects.end(), place - keys) == e.suspects.end()) continue;
+    ways.conservativeResize(Eigen::NoChange, ways.cols() + 1);
+    ways.rightCols(1) = slope.col(place);
+  }
+  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(ways);
+  return qr.householderQ() * Eigen::MatrixXd::Identity(ways.rows(), ways.cols());
 }
 
 }  // namespace
@@ -66,7 +119,7 @@ Case case_of(const std::vector<Fitted>& fitted, const std::vector<Scene>& scenes
 }
 
 Proof proof_of(const Accusation& accusation, std::size_t scenes, std::size_t keys) {
-  Proof proof{accusation, {accusation.explanation.places, accusation.lifter}, std::vector<Replicas>(scenes), {}, {}};
+  Proof proof{accusation, {accusation.explanation.places, accusation.lifter}, std::vector<Replicas>(scenes)};
   // Observers that nobody accuses err by nothing that is worth correcting.
   auto& places = proof.model.places;
   for (std::size_t s = 0; s + keys < static_cast<std::size_t>(places.size()); ++s)
@@ -101,55 +154,43 @@ std::size_t simulate(Proof& proof, const Bench& bench, bool held_out, const Prog
   return simulated;
 }
 
-Correction correction_by(const Proof& proof, const std::vector<Fitted>& fitted, const std::vector<Scene>& scenes,
-                         const Correction& before) {
-  Correction c;
-  c.runs = INFINITY;  // the fewest of any condition
-  const auto keys = static_cast<Eigen::Index>(scenes.front().middle.size());
-  for (const Fitted& f : fitted) {
-    const Scene& scene = scenes[f.scene];
-    const auto& runs = proof.runs[f.scene];
-    if (runs.seen.size() < kLeastRuns) return before;
-    Eigen::VectorXd places = proof.model.places;
-    for (std::size_t s = 0; s < scene.suspects.size(); ++s)
-      if (!scene.suspects[s].is_simulated()) places[keys + static_cast<Eigen::Index>(s)] = 0;
-    const auto expected = f.response->at(places);
-    const double each = 1 / double(runs.seen.size());
-    Eigen::VectorXd shift = -expected.mean;
-    for (const auto& seen : runs.seen) shift += f.response->whitened(seen) * each;
-    c.shift.push_back(std::move(shift));
-    c.guess.push_back(expected.guess);
-    Eigen::MatrixXd slopes(expected.slope.rows(), 0);
-    for (const int place : proof.accusation.explanation.free) {
-      if (place >= keys && !is_guilty(proof.accusation, static_cast<std::size_t>(place - keys))) continue;
-      slopes.conservativeResize(Eigen::NoChange, slopes.cols() + 1);
-      slopes.rightCols(1) = expected.slope.col(place);
-    }
-    const Eigen::HouseholderQR<Eigen::MatrixXd> qr(slopes);
-    c.directions.push_back(qr.householderQ() * Eigen::MatrixXd::Identity(slopes.rows(), slopes.cols()));
-    c.runs = std::min(c.runs, double(runs.seen.size()));
+void find_errors(FoundErrors& errors, const Proof& proof, const std::vector<Fitted>& fitted,
+                 const std::vector<Scene>& scenes) {
+  errors.resize(fitted.size());
+  for (std::size_t i = 0; i < fitted.size(); ++i) {
+    const Scene& scene = scenes[fitted[i].scene];
+    const std::vector<std::vector<double>>& seen = proof.runs[fitted[i].scene].seen;
+    if (seen.size() < kLeastRuns) continue;
+    const Eigen::VectorXd places = simulated_places(proof.model.places, scene.suspects);
+    Eigen::VectorXd shift = -fitted[i].response->at(places).mean;
+    for (const auto& run : seen) shift += fitted[i].response->whitened(run) / double(seen.size());
+    errors[i].push_back({places, std::move(shift), double(seen.size())});
   }
-  if (before.runs > 0)
-    for (std::size_t i = 0; i < c.shift.size(); ++i)
-      c.shift[i] = (before.runs * before.shift[i] + c.runs * c.shift[i]) / (before.runs + c.runs);
-  c.runs += before.runs;
-  return c;
 }
 
-Case corrected(const Case& of, const Correction& correction) {
+Case corrected(const Case& of, const FoundErrors& errors, const Explanation& about) {
   Case again = of;
-  if (correction.runs == 0) return again;
-  const double by_chance = 1 / correction.runs;
-  for (std::vector<Measured>& measured : again.by_lifter)
-    for (std::size_t i = 0; i < measured.size(); ++i) {
-      const Eigen::MatrixXd& q = correction.directions[i];
-      const Eigen::VectorXd along = q * (q.transpose() * correction.shift[i]), beside = correction.shift[i] - along;
-      const double freedom = double(beside.size() - q.cols()),
-                   off = std::max(correction.guess[i], beside.squaredNorm() / freedom - by_chance),
-                   believed = off / (off + by_chance);
-      measured[i].shift = along + believed * beside;
-      measured[i].shift_variance = by_chance;
+  for (std::size_t c = 0; c < errors.size(); ++c) {
+    const std::vector<FoundError>& found = errors[c];
+    if (found.empty()) continue;
+    const Response& response = *of.by_lifter.front()[c].response;
+    const auto expected = response.at(about.places);
+    const Eigen::VectorXd places = simulated_places(about.places, of.suspects);
+    const double numbers = double(response.numbers());
+    double usual = 0;
+    for (const FoundError& f : found)
+      usual += (f.shift.squaredNorm() / numbers - 1 / f.runs) / double(found.size());
+    usual = std::max(usual, expected.guess);
+    const auto keys = static_cast<int>(response.uncertain());
+    const Kriged beside = krige(found, places, keys, usual), along = krige(found, places, keys, std::max(usual, kOpen));
+    const Eigen::MatrixXd q = ways_of(about, expected.slope, keys);
+    const double ways = double(q.cols()) / numbers;
+    const Eigen::VectorXd shift = beside.shift + q * (q.transpose() * (along.shift - beside.shift));
+    for (std::vector<Measured>& measured : again.by_lifter) {
+      measured[c].shift = shift;
+      measured[c].shift_variance = (1 - ways) * beside.variance + ways * along.variance;
     }
+  }
   return again;
 }
 

@@ -22,21 +22,18 @@ Fitted fit(const Condition& condition, const Scene& scene, std::size_t index, co
 
 Case case_of(const std::vector<Fitted>& fitted, const std::vector<Scene>& scenes);
 
-// How far off the polynomial is, of each fitted condition, by what was simulated there.
-struct Correction {
-  std::vector<Eigen::VectorXd> shift;
-  std::vector<double> guess;  // variance that the polynomial itself expects of it
-  // Orthonormal, where the keys and the guilty move the numbers.
-  std::vector<Eigen::MatrixXd> directions;
-  double runs = 0;  // of each condition, behind it; 0: nothing is known
+// How far off the polynomial of a condition was, where it was simulated.
+struct FoundError {
+  Eigen::VectorXd places;  // keys and strengths
+  Eigen::VectorXd shift;   // simulated less expected
+  double runs = 0;
 };
+using FoundErrors = std::vector<std::vector<FoundError>>;  // by fitted condition
 
 struct Proof {
   Accusation accusation;
   Model model;                 // that was simulated
   std::vector<Replicas> runs;  // by scene; empty where it was not simulated
-  Correction correction;
-  Case corrected;  // by that
 };
 
 // How the scenes are simulated.
@@ -53,13 +50,13 @@ std::size_t simulate(Proof& proof, const Bench& bench, bool held_out, const Prog
 
 Proof proof_of(const Accusation& accusation, std::size_t scenes, std::size_t keys);
 
-// What the proof's runs say of the polynomial, together with what is known from runs near by.
-Correction correction_by(const Proof& proof, const std::vector<Fitted>& fitted, const std::vector<Scene>& scenes,
-                         const Correction& before);
+// Adds what the proof's runs say of the polynomials.
+void find_errors(FoundErrors& errors, const Proof& proof, const std::vector<Fitted>& fitted,
+                 const std::vector<Scene>& scenes);
 
-// The case with the polynomial put right. Few runs are a noisy word: all of it is believed in the few directions in
-// which keys and strengths would make up for it; of the many others the less, the smaller the errors seem.
-Case corrected(const Case& of, const Correction& correction);
+// The case with the polynomials put right about this explanation's places, by all that was found, the nearer the more
+// (kriging of what the polynomials leave): the same error is the same to all accusations near by, however few the runs.
+Case corrected(const Case& of, const FoundErrors& errors, const Explanation& about);
 
 // Whether what is now believed lies so far from what was simulated that it takes other simulations.
 bool has_moved(const Proof& proof, std::size_t keys);

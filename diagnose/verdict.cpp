@@ -140,8 +140,8 @@ class Court {
     for (int round = 0; round < kRounds; ++round) {
       const std::vector<Accusation> summoned = summon(round == 0);
       for (std::size_t i = 0; i < summoned.size(); ++i) try_one(summoned[i], stage(round, i, summoned.size()));
-      settle(posterior_, of_);
       if (summoned.empty()) break;
+      weigh_all_again();
     }
   }
 
@@ -149,8 +149,9 @@ class Court {
   Proof* prove(const std::set<std::string>& names) {
     for (const Accusation& a : posterior_.accusations) {
       if (names_of(a, of_.suspects) != names) continue;
-      if (proofs_.find(a.explanation.suspects) == proofs_.end()) try_one(a, {});
-      return proof_of(a.explanation.suspects);
+      const std::vector<int> suspects = a.explanation.suspects;
+      if (proofs_.find(suspects) == proofs_.end()) try_one(a, {});
+      return proof_of(suspects);
     }
     return nullptr;
   }
@@ -169,46 +170,18 @@ class Court {
   std::size_t simulations() const { return simulations_; }
 
  private:
-  void try_one(const Accusation accusation, const Progress& stage) {
-    const std::vector<int>& guilty = accusation.explanation.suspects;
+  void try_one(const Accusation& accusation, const Progress& stage) {
     Proof proof = diagnose::proof_of(accusation, scenes_.size(), keys_);
     simulations_ += simulate(proof, bench_, false, stage);
-    const auto before = proofs_.find(guilty);
-    proof.correction =
-        correction_by(proof, fitted_, scenes_, before == proofs_.end() ? Correction{} : before->second.correction);
-    proof.corrected = corrected(of_, proof.correction);
-    proofs_[guilty] = std::move(proof);
-    for (Accusation& a : posterior_.accusations) correct(a, guilty);
+    find_errors(errors_, proof, fitted_, scenes_);
+    proofs_[accusation.explanation.suspects] = std::move(proof);
+  }
+
+  void weigh_all_again() {
+    for (Accusation& a : posterior_.accusations) a = weighed_again(a, corrected(of_, errors_, a.explanation));
     for (const Accusation& a : posterior_.accusations)
-      if (a.explanation.suspects == guilty) proofs_[guilty].accusation = a;
-  }
-
-  // Who was simulated alone puts right all accusations that name another beside him too. What a pair's own runs say
-  // counts where they do not speak for it: a few runs by chance fit better, and pairs are many.
-  void correct(Accusation& a, const std::vector<int>& tried) const {
-    const std::vector<int>& named = a.explanation.suspects;
-    std::vector<std::vector<int>> by{named};
-    if (named.size() == 2) by.push_back({likelier_of(named)});
-    if (std::find(by.begin(), by.end(), tried) == by.end()) return;
-    std::vector<Accusation> again;
-    for (const std::vector<int>& suspects : by)
-      if (const auto at = proofs_.find(suspects); at != proofs_.end())
-        again.push_back(weighed_again(a, at->second.corrected));
-    a = *std::min_element(again.begin(), again.end(),
-                          [](const Accusation& x, const Accusation& y) { return x.log_weight < y.log_weight; });
-  }
-
-  int likelier_of(const std::vector<int>& pair) const {
-    double most = -INFINITY;
-    int likelier = -1;
-    for (const Accusation& a : posterior_.accusations) {
-      const std::vector<int>& named = a.explanation.suspects;
-      if (named.size() != 1 || a.log_weight <= most || std::find(pair.begin(), pair.end(), named.front()) == pair.end())
-        continue;
-      most = a.log_weight;
-      likelier = named.front();
-    }
-    return likelier;
+      if (const auto at = proofs_.find(a.explanation.suspects); at != proofs_.end()) at->second.accusation = a;
+    settle(posterior_, of_);
   }
 
   std::vector<Accusation> summon(bool first) const {
@@ -257,6 +230,7 @@ class Court {
   std::size_t keys_;
   Posterior posterior_;
   std::map<std::vector<int>, Proof> proofs_;  // by suspects
+  FoundErrors errors_;                        // by all that was simulated
   std::size_t simulations_ = 0;
 };
 
