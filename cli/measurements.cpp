@@ -198,11 +198,12 @@ void read_frames(Measurement& m, const fs::path& films, const CommonOptions& opt
 void read_torque(Measurement& m, std::vector<std::string>& notes) {
   Experiment& e = m.experiment;
   const double slices = slice_count(m.config), speed = rad_s_from_rpm(speed_rpm(m.config.mill));
+  const bool is_told = !std::isnan(e.torque.value) || !std::isnan(e.power.value);
   if (!e.torque_series.empty()) {
     const io::TorqueSeries series = io::read_torque_series(e.torque_series);
     for (std::size_t i = 0; i < series.time.size(); ++i)
       m.torque_series.push_back({series.time[i], series.torque[i] / slices});
-    if (std::isnan(e.power.value) && std::isnan(e.torque.value))
+    if (!is_told)
       e.torque = mean_of_series(series.torque);
     else
       notes.push_back(e.name + ": the mean torque is that of power_W or torque_N_m, not of torque_series");
@@ -210,6 +211,7 @@ void read_torque(Measurement& m, std::vector<std::string>& notes) {
   }
   if (!std::isnan(e.torque.value)) m.torque = {e.torque.value / slices, e.torque.se / slices};
   if (!std::isnan(e.power.value)) m.torque = {e.power.value / (slices * speed), e.power.se / (slices * speed)};
+  if (is_told) m.torque_error = or_nothing(m.torque.se);
   const double offset = or_nothing(m.config.measurement.torque_offset_N_m) / slices;
   m.torque.value -= offset;
   for (diagnose::TorqueSample& sample : m.torque_series) sample.torque -= offset;

@@ -26,12 +26,12 @@ class Account {
     const ObservationLayout layout(scene.measurement->config.mill.lifters.count);
     std::vector<const Replicas*> sets{&before_.runs[index], &after_.runs[index]};
     if (runner_up_ != nullptr) sets.push_back(&runner_up_->runs[index]);
-    const std::vector<double> scatter = scatter_of(sets);
-    if (scatter.empty()) return;
-    const Contrast before = contrast(scene, before_.model, before_.runs[index], scatter),
-                   after = contrast(scene, after_.model, after_.runs[index], scatter);
+    const Chance chance = chance_of(sets);
+    if (chance.left_out.empty()) return;
+    const Contrast before = contrast(scene, before_.model, before_.runs[index], chance),
+                   after = contrast(scene, after_.model, after_.runs[index], chance);
     GapRow row{e.name, e.hold_out, before.chi, after.chi, kNotGiven, scene.measurement->torque, {}, {}};
-    if (runner_up_ != nullptr) row.runner_up = contrast(scene, runner_up_->model, runner_up_->runs[index], scatter).chi;
+    if (runner_up_ != nullptr) row.runner_up = contrast(scene, runner_up_->model, runner_up_->runs[index], chance).chi;
     row.torque_before = torque_of(before_.runs[index]);
     row.torque_after = torque_of(after_.runs[index]);
     d.gaps.push_back(row);
@@ -49,7 +49,7 @@ class Account {
     }
     for (const Observable o : kObservables) {
       const std::size_t first = layout.first(o), count = layout.count(o);
-      const double limit = chance_limit(sets, scatter, first, count);
+      const double limit = chance_limit(chance, first, count);
       double chi_before = 0, chi_after = 0, n = 0;
       for (std::size_t k = first; k < first + count; ++k) {
         if (std::isnan(z_before[k]) || std::isnan(z_after[k])) continue;

@@ -86,7 +86,7 @@ void check_balance(const Measurement& m, std::vector<ExactCheck>& checks) {
                           std::abs(time.back() - charge.time.back()) < kSameTime * lasts;
     Balance balance{m.torque.value - weight.value, std::hypot(m.torque.se, weight.se)};
     if (together) balance = balance_over(charge, time, torque);
-    balance.se = std::hypot(balance.se, kInstrument * m.torque.value);
+    balance.se = std::hypot(balance.se, m.torque_error, kInstrument * m.torque.value);
     const double mass_gravity = slice_mass(m.config, class_counts(m.config)) * kGravity;
     const std::vector<MovedBy> by{{"torque_offset", 1 / m.torque.value},
                                   {"camera_rotation", 180 / kPi / (mass_gravity * height)},

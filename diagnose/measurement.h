@@ -30,6 +30,7 @@ struct Measurement {
   ChargeMotion motion;            // of film, tracks or motion file; of the first also circle, rates, repeats
   std::vector<TorqueSample> torque_series;  // empty without
   Estimate torque;                          // mean, of one slice [N m], however it was measured; NaN without
+  double torque_error = 0;                  // of that, what the instrument is said to err by; 0 where it is not said
   double revolutions = 0;                   // of the mill that frames or, without, the torque series cover; 0 without
 };
 

@@ -105,7 +105,7 @@ Observation observe(const Measurement& m, const ObservationLayout& layout, doubl
   if (!std::isnan(torque.value)) {
     const std::size_t at = layout.first(Observable::kTorque), closure = layout.first(Observable::kClosure);
     seen.value[at] = torque.value - torque_offset;
-    seen.noise[at] = seen.noise[closure] = or_nothing(torque.se);
+    seen.noise[at] = seen.noise[closure] = m.torque_error;
     if (!m.frames.empty()) seen.value[closure] = seen.value[at] - held_by_torque(m, observer);
   }
   const std::size_t angles = layout.first(Observable::kAngles);

@@ -98,44 +98,48 @@ std::vector<Replicas> resimulate(const std::vector<Scene>& scenes, const std::ve
   return by_scene;
 }
 
-std::vector<double> scatter_of(const std::vector<const Replicas*>& sets) {
-  std::vector<double> sum;
+Chance chance_of(const std::vector<const Replicas*>& sets) {
+  std::vector<double> squares;
   double freedom = 0;
-  for (const Replicas* set : sets) {
-    if (set->seen.size() < 2) continue;
-    sum.resize(set->seen.front().size(), 0);
-    for (std::size_t i = 0; i < sum.size(); ++i) {
-      const double mean = mean_of(set->seen, i);
-      for (const auto& s : set->seen) sum[i] += (s[i] - mean) * (s[i] - mean);
+  const auto each_run = [&](const auto& use) {  // with its distance from the mean of its set, had it no part in that
+    for (const Replicas* set : sets) {
+      const double n = double(set->seen.size());
+      if (n < 2) continue;
+      std::vector<double> apart(set->seen.front().size());
+      for (const auto& run : set->seen) {
+        for (std::size_t i = 0; i < apart.size(); ++i)
+          apart[i] = (run[i] - mean_of(set->seen, i)) * std::sqrt(n / (n - 1));
+        use(apart, (n - 1) / n);
+      }
     }
-    freedom += double(set->seen.size()) - 1;
-  }
-  for (double& s : sum) s = std::sqrt(s / freedom);
-  return sum;
+  };
+  each_run([&](const std::vector<double>& apart, double share) {
+    squares.resize(apart.size(), 0);
+    for (std::size_t i = 0; i < apart.size(); ++i) squares[i] += share * apart[i] * apart[i];
+    freedom += share;
+  });
+  Chance chance;
+  each_run([&](const std::vector<double>& apart, double) {
+    std::vector<double>& z = chance.left_out.emplace_back();
+    for (std::size_t i = 0; i < apart.size(); ++i)
+      z.push_back(apart[i] / std::sqrt((squares[i] - apart[i] * apart[i]) / (freedom - 1)));
+  });
+  for (const double s : squares) chance.scatter.push_back(std::sqrt(s / freedom));
+  return chance;
 }
 
-double chance_limit(const std::vector<const Replicas*>& sets, const std::vector<double>& scatter, std::size_t first,
-                    std::size_t count) {
+double chance_limit(const Chance& chance, std::size_t first, std::size_t count) {
   std::vector<double> largest;
-  for (const Replicas* set : sets) {
-    const double n = double(set->seen.size());
-    if (n < 2) continue;
-    std::vector<double> mean;
-    for (std::size_t i = first; i < first + count; ++i) mean.push_back(mean_of(set->seen, i));
-    for (const auto& run : set->seen) {
-      double most = 0;
-      for (std::size_t i = first; i < first + count; ++i) {
-        // Against the mean of the others: n / (n - 1) times its distance from the mean of all.
-        const double z = (run[i] - mean[i - first]) * std::sqrt(n / (n - 1)) / scatter[i];
-        if (std::isfinite(z)) most = std::max(most, std::abs(z));
-      }
-      largest.push_back(most);
-    }
+  for (const std::vector<double>& z : chance.left_out) {
+    double most = 0;
+    for (std::size_t i = first; i < first + count; ++i)
+      if (std::isfinite(z[i])) most = std::max(most, std::abs(z[i]));
+    largest.push_back(most);
   }
   return quantile_of(std::move(largest), 0.95);
 }
 
-Contrast contrast(const Scene& scene, const Model& model, const Replicas& runs, const std::vector<double>& scatter) {
+Contrast contrast(const Scene& scene, const Model& model, const Replicas& runs, const Chance& chance) {
   Contrast c;
   if (runs.seen.empty()) return c;
   std::vector<double> noise;
@@ -148,8 +152,8 @@ Contrast contrast(const Scene& scene, const Model& model, const Replicas& runs, 
     double there = 0;
     for (const auto& s : runs.seen) there += std::abs(s[i]) > 1e-12;
     if (std::isnan(measured[i]) || std::isnan(mean) || there < kMostlyThere * n) continue;
-    const double chance = scatter[i] * scatter[i] * (runs.revolutions / watched + 1 / n);
-    const double z = (measured[i] - mean) / std::sqrt(chance + noise[i] * noise[i]);
+    const double variance = chance.scatter[i] * chance.scatter[i] * (runs.revolutions / watched + 1 / n);
+    const double z = (measured[i] - mean) / std::sqrt(variance + noise[i] * noise[i]);
     if (!std::isfinite(z)) continue;
     c.numbers.push_back(i);
     c.measured.push_back(measured[i]);
@@ -157,7 +161,11 @@ Contrast contrast(const Scene& scene, const Model& model, const Replicas& runs, 
     c.z.push_back(z);
     sum += z * z;
   }
-  c.chi = std::sqrt(sum / double(c.numbers.size()));
+  double by_chance = 0, known = 0;
+  for (const std::vector<double>& run : chance.left_out)
+    for (const std::size_t i : c.numbers)
+      if (std::isfinite(run[i])) by_chance += run[i] * run[i], ++known;
+  c.chi = std::sqrt(sum / double(c.numbers.size()) / (by_chance / known));
   return c;
 }
 

@@ -43,21 +43,24 @@ std::vector<Replicas> resimulate(const std::vector<Scene>& scenes, const std::ve
                                  const Model& model, std::size_t seeds, const MillWith& mill_with,
                                  const Progress& progress = {});
 
+// What chance does to the numbers of one run, by several sets of runs of one scene.
+struct Chance {
+  std::vector<double> scatter;  // of each number, about the means of their sets
+  // Of each run, each number's z against the other runs of its set, by the scatter of all runs but this one.
+  std::vector<std::vector<double>> left_out;
+};
+Chance chance_of(const std::vector<const Replicas*>& sets);
+
+// |z| that chance alone exceeds somewhere among the numbers [first, first + count) in one diagnosis of twenty.
+double chance_limit(const Chance& chance, std::size_t first, std::size_t count);
+
 // Of the numbers that the scene's experiment has: measured, mean of the runs, and z of the difference by what chance
-// does to a run (`scatter`, of one run of the library's length), to their mean, and by the measurement's own noise.
+// does to a run, to their mean, and by the measurement's own noise.
 struct Contrast {
   std::vector<std::size_t> numbers;  // which
   std::vector<double> measured, simulated, z;
-  double chi = kNotGiven;  // root of the mean of z^2: 1 is agreement
+  double chi = kNotGiven;  // root of the mean of z^2, in units of that of a run left out: 1 is agreement
 };
-Contrast contrast(const Scene& scene, const Model& model, const Replicas& runs, const std::vector<double>& scatter);
-
-// What chance does to each number in one run: scatter about their own means of several sets of runs of one scene.
-std::vector<double> scatter_of(const std::vector<const Replicas*>& sets);
-
-// |z| that chance alone exceeds somewhere among the numbers [first, first + count) in one diagnosis of twenty: of each
-// run against the others of its set.
-double chance_limit(const std::vector<const Replicas*>& sets, const std::vector<double>& scatter, std::size_t first,
-                    std::size_t count);
+Contrast contrast(const Scene& scene, const Model& model, const Replicas& runs, const Chance& chance);
 
 }  // namespace tumble::diagnose

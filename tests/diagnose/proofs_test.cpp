@@ -84,5 +84,33 @@ TEST_F(PutRight, WhatIsLeftOpenShrinksWithWhatIsFound) {
   EXPECT_LT(last, 1.0 / 40 + 1e-9);
 }
 
+// Six runs know their scatter badly: what is z = 1 to many is more to few, and to a measurement as to a run left out.
+TEST(Chance, ARunLeftOutIsAsFarOffAsAMeasurement) {
+  Random random(7);
+  constexpr std::size_t kNumbers = 4000;
+  const auto run = [&] {
+    std::vector<double> numbers(kNumbers);
+    for (std::size_t i = 0; i < kNumbers; ++i) numbers[i] = double(i % 7) + gaussian(random);
+    return numbers;
+  };
+  Replicas a, b;
+  for (int r = 0; r < 4; ++r) a.seen.push_back(run());
+  for (int r = 0; r < 6; ++r) b.seen.push_back(run());
+  const Chance chance = chance_of({&a, &b});
+  double left_out = 0, fresh = 0;
+  for (const std::vector<double>& z : chance.left_out)
+    for (const double each : z) left_out += each * each / double(chance.left_out.size());
+  const std::vector<double> measured = run();
+  for (std::size_t i = 0; i < kNumbers; ++i) {
+    double mean = 0;
+    for (const auto& r : b.seen) mean += r[i] / 6;
+    const double z = (measured[i] - mean) / (chance.scatter[i] * std::sqrt(1 + 1.0 / 6));
+    fresh += z * z;
+  }
+  EXPECT_GT(fresh, 1.15 * kNumbers);
+  // Eight degrees of freedom are left to a fresh one, seven to a run left out: 8 / 6 against 7 / 5 on average.
+  EXPECT_NEAR(left_out / fresh, (7.0 / 5) / (8.0 / 6), 0.08);
+}
+
 }  // namespace
 }  // namespace tumble::diagnose
