@@ -178,8 +178,7 @@ Case corrected(const Case& of, const FoundErrors& errors, const Explanation& abo
     const Eigen::VectorXd places = simulated_places(about.places, of.suspects);
     const double numbers = double(response.numbers());
     double usual = 0;
-    for (const FoundError& f : found)
-      usual += (f.shift.squaredNorm() / numbers - 1 / f.runs) / double(found.size());
+    for (const FoundError& f : found) usual += (f.shift.squaredNorm() / numbers - 1 / f.runs) / double(found.size());
     usual = std::max(usual, expected.guess);
     const auto keys = static_cast<int>(response.uncertain());
     const Kriged beside = krige(found, places, keys, usual), along = krige(found, places, keys, std::max(usual, kOpen));
