@@ -26,4 +26,10 @@ Gap gap_before(const Diagnosis& diagnosis) { return gap_of(diagnosis, &GapRow::b
 Gap gap_after(const Diagnosis& diagnosis) { return gap_of(diagnosis, &GapRow::after); }
 Gap gap_of_runner_up(const Diagnosis& diagnosis) { return gap_of(diagnosis, &GapRow::runner_up); }
 
+const DiagnosedExperiment* experiment_of(const Diagnosis& d, const std::string& name) {
+  for (const DiagnosedExperiment& e : d.experiments)
+    if (e.name == name) return &e;
+  return nullptr;
+}
+
 }  // namespace tumble

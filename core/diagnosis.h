@@ -149,6 +149,9 @@ struct Diagnosis {
 struct Gap {
   double fit = kNotGiven, hold_out = kNotGiven;
 };
+// The one of this name; nothing where there is none.
+const DiagnosedExperiment* experiment_of(const Diagnosis& diagnosis, const std::string& name);
+
 Gap gap_before(const Diagnosis& diagnosis);
 Gap gap_after(const Diagnosis& diagnosis);
 Gap gap_of_runner_up(const Diagnosis& diagnosis);

@@ -142,4 +142,15 @@ std::string with_capital(std::string text) {
   return text;
 }
 
+std::string gaps_in_words(double from, double to) {
+  return gap_in_words(from) + (std::isnan(to) ? "" : " → " + gap_in_words(to));
+}
+
+std::string condition_in_words(const DiagnosedExperiment& e) {
+  std::string text;
+  if (std::isfinite(e.speed_fraction)) text = fmt::format("{:.2f} of critical", e.speed_fraction);
+  if (std::isfinite(e.filling)) text += fmt::format("{}{:.0f} % full", text.empty() ? "" : ", ", 100 * e.filling);
+  return text;
+}
+
 }  // namespace tumble::io

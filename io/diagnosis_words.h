@@ -16,7 +16,9 @@ std::string sentence_below_title(const Diagnosis& diagnosis);
 
 std::string with_capital(std::string text);                       // of ASCII
 std::string gap_in_words(double chi);                             // "4.9", "12"
+std::string gaps_in_words(double from, double to);                // "4.9 → 1.2", or the one that is known
 std::string probability_in_words(double probability);             // "0.97", "above 0.999"
 std::string parameter_in_words(const FoundParameter& parameter);  // "coefficient 0.0213 ± 0.0031", "+2.0 ± 0.1 %"
+std::string condition_in_words(const DiagnosedExperiment& e);     // "0.70 of critical, filling 35 %"
 
 }  // namespace tumble::io

@@ -18,6 +18,8 @@ bool is_number(const std::string& cell) {
   return cell.empty() || std::isdigit(static_cast<unsigned char>(cell[0]));
 }
 
+}  // namespace
+
 std::string table_html(const PageTable& table) {
   // Columns of words stand to the left, numbers to the right.
   std::vector<bool> words(table.header.size());
@@ -45,8 +47,6 @@ std::string table_html(const PageTable& table) {
   if (!table.note.empty()) out += "<p class=\"note\">" + escaped(table.note) + "</p>\n";
   return out;
 }
-
-}  // namespace
 
 std::string section_html(const PageSection& section, const std::string& id) {
   std::string out = "<section>\n";

@@ -9,4 +9,6 @@ namespace tumble::io::report {
 // still to go into the page's data.
 std::string section_html(const PageSection& section, const std::string& id);
 
+std::string table_html(const PageTable& table);  // with title and note; columns of numbers are set as such
+
 }  // namespace tumble::io::report
