@@ -51,7 +51,8 @@ State look(const Problem& problem, const Eigen::VectorXd& x) {
   for (const Measured& m : problem.measured) {
     const auto expected = m.response->at(problem.all(x));
     const bool shown = m.shift.size() > 0;
-    const double variance = m.response->revolutions() / m.revolutions + (shown ? m.shift_variance : expected.guess);
+    const double variance =
+        m.scatter * m.response->revolutions() / m.revolutions + (shown ? m.shift_variance : expected.guess);
     Eigen::VectorXd rest = m.seen - expected.mean;
     if (shown) rest -= m.shift;
     Eigen::MatrixXd slope(rest.size(), n);

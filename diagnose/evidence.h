@@ -16,6 +16,7 @@ struct Measured {  // in one condition
   // Where simulations at the very places have shown how far off the polynomial is: by this (else empty), known so well.
   Eigen::VectorXd shift = {};
   double shift_variance = 0;
+  double scatter = 1;  // variance that chance makes about there, against the response's
 };
 
 struct Clue {  // what an exact check says, without any simulation: a weighted sum of strengths

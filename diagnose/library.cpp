@@ -26,14 +26,20 @@ constexpr std::size_t kStride = 2;  // one frame after another shows little that
 constexpr double kRevolutions = 8;  // of a run that are looked at
 constexpr std::size_t kPlain = 12, kOfSuspect = 5, kOfContact = 10;  // runs of a block
 
+// Who watches a mill takes it for the one that MILL.toml and the experiment describe, worn or overfilled as it may be.
+RunSetup as_believed(RunSetup setup, const Config& condition) {
+  setup.config = condition;
+  return setup;
+}
+
 // All that is summed up of a run.
 class Watcher {
  public:
   Watcher(const RunSetup& setup, const Config& condition, Watched watched)
-      : setup_(setup),
-        shape_(make_mill_shape(setup.config)),
+      : setup_(as_believed(setup, condition)),
+        shape_(make_mill_shape(condition)),
         layout_(shape_.lifter_count),
-        measurer_(setup),
+        measurer_(setup_),
         laws_(condition) {
     double mean = 0;
     for (const double r : setup.balls.radius) mean += r / double(setup.balls.size());
@@ -72,8 +78,8 @@ class Watcher {
   std::vector<Sight> finish_sights(const ChargeMotion& motion) {
     double mass = 0;
     for (const double m : setup_.balls.mass) mass += m;
-    const double weight = slice_mass(setup_.config, class_counts(setup_.config)) * kGravity;
-    const double across = weight * height_ / (mass * double(frames_));
+    const double believed = slice_mass(setup_.config, class_counts(setup_.config));
+    const double across = believed * kGravity * height_ / (mass * double(frames_));
     std::vector<Sight> sights;
     for (std::size_t o = 0; o < all_.size(); ++o) {
       Sight sight;
@@ -83,8 +89,9 @@ class Watcher {
         maps_->finish(o * kSpans.size() + s, seen);
         flights_->finish(layout_, all_[o], seen);
         seen.value[layout_.first(Observable::kTorque)] = motion.torque.value;
-        const double held = (1 + all_[o].scale) * (std::cos(all_[o].rotation) * motion.torque_closure.value -
-                                                   std::sin(all_[o].rotation) * across);
+        const double held =
+            (1 + all_[o].scale) * (std::cos(all_[o].rotation) * motion.torque_closure.value * believed / mass -
+                                   std::sin(all_[o].rotation) * across);
         seen.value[layout_.first(Observable::kClosure)] = motion.torque.value - held;
         std::copy(laws.value.begin(), laws.value.end(),
                   seen.value.begin() + static_cast<std::ptrdiff_t>(layout_.first(Observable::kLaws)));

@@ -19,6 +19,7 @@ constexpr double kKeyReach = 1, kStrengthReach = 0.5;
 // Variance of an error in the few directions in which keys and strengths could make up for it: what was simulated is
 // believed there, for all that is found hangs on it.
 constexpr double kOpen = 1;
+constexpr double kUneven = 0.7, kScatterError = 0.15;  // ln of what chance does, against the usual, and as found
 
 bool is_guilty(const Accusation& a, std::size_t suspect) {
   const auto& guilty = a.explanation.suspects;
@@ -53,12 +54,22 @@ Kriged krige(const std::vector<FoundError>& found, const Eigen::VectorXd& at, Ei
     const FoundError& f = found[static_cast<std::size_t>(i)];
     for (Eigen::Index j = 0; j < n; ++j)
       known(i, j) = variance * alike(f.places, found[static_cast<std::size_t>(j)].places, keys);
-    known(i, i) += 1 / f.runs;
+    known(i, i) += f.scatter / f.runs;
     near[i] = variance * alike(f.places, at, keys);
     shifts.col(i) = f.shift;
   }
   const Eigen::VectorXd weights = known.ldlt().solve(near);
   return {shifts * weights, variance - near.dot(weights)};
+}
+
+// What chance does about there, against what it usually does.
+double scatter_at(const std::vector<FoundError>& found, const Eigen::VectorXd& at, Eigen::Index keys) {
+  std::vector<FoundError> logs;
+  for (const FoundError& f : found) {
+    const double known = 1 / (kScatterError * kScatterError);  // as a mean of so many
+    logs.push_back({f.places, Eigen::VectorXd::Constant(1, std::log(f.scatter)), known, 1});
+  }
+  return std::exp(krige(logs, at, keys, kUneven * kUneven).shift[0]);
 }
 
 // Orthonormal: where the keys and the guilty move the numbers.
@@ -162,9 +173,14 @@ void find_errors(FoundErrors& errors, const Proof& proof, const std::vector<Fitt
     const std::vector<std::vector<double>>& seen = proof.runs[fitted[i].scene].seen;
     if (seen.size() < kLeastRuns) continue;
     const Eigen::VectorXd places = simulated_places(proof.model.places, scene.suspects);
-    Eigen::VectorXd shift = -fitted[i].response->at(places).mean;
-    for (const auto& run : seen) shift += fitted[i].response->whitened(run) / double(seen.size());
-    errors[i].push_back({places, std::move(shift), double(seen.size())});
+    const Response& response = *fitted[i].response;
+    const double runs = double(seen.size());
+    Eigen::VectorXd mean = Eigen::VectorXd::Zero(response.at(places).mean.size());
+    double squares = 0;
+    for (const auto& run : seen) mean += response.whitened(run) / runs;
+    for (const auto& run : seen) squares += (response.whitened(run) - mean).squaredNorm();
+    errors[i].push_back(
+        {places, mean - response.at(places).mean, runs, squares / ((runs - 1) * double(response.numbers()))});
   }
 }
 
@@ -178,14 +194,17 @@ Case corrected(const Case& of, const FoundErrors& errors, const Explanation& abo
     const Eigen::VectorXd places = simulated_places(about.places, of.suspects);
     const double numbers = double(response.numbers());
     double usual = 0;
-    for (const FoundError& f : found) usual += (f.shift.squaredNorm() / numbers - 1 / f.runs) / double(found.size());
+    for (const FoundError& f : found)
+      usual += (f.shift.squaredNorm() / numbers - f.scatter / f.runs) / double(found.size());
     usual = std::max(usual, expected.guess);
     const auto keys = static_cast<int>(response.uncertain());
     const Kriged beside = krige(found, places, keys, usual), along = krige(found, places, keys, std::max(usual, kOpen));
     const Eigen::MatrixXd q = ways_of(about, expected.slope, keys);
     const double ways = double(q.cols()) / numbers;
     const Eigen::VectorXd shift = beside.shift + q * (q.transpose() * (along.shift - beside.shift));
+    const double scatter = scatter_at(found, places, keys);
     for (std::vector<Measured>& measured : again.by_lifter) {
+      measured[c].scatter = scatter;
       measured[c].shift = shift;
       measured[c].shift_variance = (1 - ways) * beside.variance + ways * along.variance;
     }

@@ -25,8 +25,9 @@ Case case_of(const std::vector<Fitted>& fitted, const std::vector<Scene>& scenes
 // How far off the polynomial of a condition was, where it was simulated.
 struct FoundError {
   Eigen::VectorXd places;  // keys and strengths
-  Eigen::VectorXd shift;   // simulated less expected
+  Eigen::VectorXd shift;   // mean of the runs less expected
   double runs = 0;
+  double scatter = 1;  // variance of the runs about their mean, against the usual one
 };
 using FoundErrors = std::vector<std::vector<FoundError>>;  // by fitted condition
 

@@ -206,8 +206,6 @@ class Court {
       ++tried;
       others += other;
       add(a.explanation.suspects);
-      if (first && a.explanation.suspects.size() > 1)
-        for (const int s : a.explanation.suspects) add({s});
     }
     return list;
   }

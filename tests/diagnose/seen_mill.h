@@ -51,7 +51,7 @@ inline Measurement measure(const SimulatedRun& run, const Errors& e, std::uint64
   Measurement m;
   m.config = run.setup.config;
   m.config.effects.clear();  // what the model does not know
-  m.experiment.name = m.experiment.place = "e";
+  m.experiment.name = m.experiment.place = std::string("e");
   m.frames_file = "tracks.csv";
   const double c = std::cos(e.rotation) * (1 + e.scale), s = std::sin(e.rotation) * (1 + e.scale);
   std::vector<double> torque;
