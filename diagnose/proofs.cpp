@@ -172,7 +172,10 @@ void find_errors(FoundErrors& errors, const Proof& proof, const std::vector<Fitt
     const Scene& scene = scenes[fitted[i].scene];
     const std::vector<std::vector<double>>& seen = proof.runs[fitted[i].scene].seen;
     if (seen.size() < kLeastRuns) continue;
-    const Eigen::VectorXd places = simulated_places(proof.model.places, scene.suspects);
+    Eigen::VectorXd places = simulated_places(proof.model.places, scene.suspects);
+    for (std::size_t s = 0; s < scene.suspects.size(); ++s)  // a drum holds whole balls
+      if (double& strength = places[static_cast<Eigen::Index>(scene.middle.size() + s)]; strength != 0)
+        strength = strength_of_sets(scene.suspects[s], strength);
     const Response& response = *fitted[i].response;
     const double runs = double(seen.size());
     Eigen::VectorXd mean = Eigen::VectorXd::Zero(response.at(places).mean.size());

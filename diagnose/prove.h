@@ -59,7 +59,7 @@ double chance_limit(const Chance& chance, std::size_t first, std::size_t count);
 struct Contrast {
   std::vector<std::size_t> numbers;  // which
   std::vector<double> measured, simulated, z;
-  double chi = kNotGiven;  // root of the mean of z^2, in units of that of a run left out: 1 is agreement
+  double chi = kNotGiven;  // root of the mean of z^2, in units of that of the middle run left out: 1 is agreement
 };
 Contrast contrast(const Scene& scene, const Model& model, const Replicas& runs, const Chance& chance);
 
