@@ -23,6 +23,13 @@ function(precompile target)
   endif()
 endfunction()
 
+# For what computes next to nothing itself: a quarter less to compile.
+function(optimise_lightly)
+  foreach(target IN LISTS ARGN)
+    target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
+  endforeach()
+endfunction()
+
 # add_room(name SOURCES ... USES rooms that its headers show ... LIBRARIES its own third-party doors ... PRECOMPILED their heavy headers ...)
 function(add_room name)
   cmake_parse_arguments(ROOM "" "" "SOURCES;USES;LIBRARIES;PRECOMPILED" ${ARGN})

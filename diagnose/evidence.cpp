@@ -110,6 +110,22 @@ State descend(const Problem& problem, Eigen::VectorXd& x) {
 
 double normal_share_below(double z) { return 0.5 * std::erfc(-z / std::sqrt(2.0)); }
 
+// A drum holds whole balls: of a strength that adds some, Laplace's integral over `at` +- `se` is a sum over their
+// numbers, none excepted.
+double log_share_of_whole(const Suspect& suspect, double at, double se) {
+  for (const Suspect::Set& set : suspect.sets) {
+    if (!set.whole) continue;
+    const double step = 1 / std::abs(set.full - set.none);
+    double sum = 0;
+    for (double n = std::ceil(suspect.low / step); n * step <= suspect.high; ++n) {
+      const double z = (n * step - at) / se;
+      if (n != 0) sum += step / se * std::exp(-0.5 * z * z) / std::sqrt(2 * M_PI);
+    }
+    return std::log(sum + 1e-300);
+  }
+  return 0;
+}
+
 }  // namespace
 
 double Explanation::se(int place) const {
@@ -169,10 +185,12 @@ Explanation explain(std::span<const Measured> measured, std::span<const Suspect>
     // Laplace: what is known beforehand against what is left open.
     best.log_evidence = -0.5 * s.misfit - s.information.llt().matrixLLT().diagonal().array().log().sum() -
                         problem.prior_sd.array().log().sum();
-    for (const std::size_t a : accused) {  // of one-sided strengths half of the prior is not there
+    for (const std::size_t a : accused) {  // of one-sided strengths half of the prior is not there, of balls halves
       const auto i = static_cast<Eigen::Index>(a);
-      if (problem.low[i] < 0) continue;
-      best.log_evidence += std::log(2 * normal_share_below(x[i] / std::sqrt(best.covariance(i, i))));
+      const double se = std::sqrt(best.covariance(i, i));
+      if (problem.low[i] >= 0) best.log_evidence += std::log(2 * normal_share_below(x[i] / se));
+      const Suspect& suspect = suspects[static_cast<std::size_t>(problem.free[a] - keys)];
+      best.log_evidence += log_share_of_whole(suspect, x[i], se);
     }
   }
   if (std::isinf(least)) throw std::logic_error("an explanation of numbers that are none");

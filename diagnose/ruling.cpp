@@ -11,6 +11,7 @@ namespace {
 constexpr double kSure = 0.9;                     // probability of one name beside which the others are no rivals
 constexpr double kRuledOut = 0.01, kClearly = 9;  // probability; chi2
 constexpr double kCredible = 0.95, kMostly = 0.5;
+constexpr double kEnough = 0.3, kBeside = 1.0 / 3;  // of nobody's guilt, where nobody else's comes near
 
 NameKind kind_of(const Suspect& suspect) {
   return suspect.kind == SuspectKind::kPhysics ? NameKind::kPhysics : NameKind::kArtefact;
@@ -94,7 +95,9 @@ Ruling rule(const Posterior& p, std::span<const Suspect> suspects) {
   std::stable_sort(sets.begin(), sets.end(), [](const auto& a, const auto& b) { return a.second > b.second; });
   const auto& [best, probability_of_best] = sets.front();
   const double known = 1 - p.unknown;
-  if (best.empty() && probability_of_best > kMostly * known) return {Finding::kAgreement, {}};
+  const bool alone = std::all_of(suspects.begin(), suspects.end(),
+                                 [&](const Suspect& s) { return p.inclusion(suspects, s.name) < kBeside * p.none(); });
+  if (best.empty() && probability_of_best > (alone ? kEnough : kMostly) * known) return {Finding::kAgreement, {}};
   // Where not all that is named is sure, those without whom hardly anything likely does.
   std::set<std::string> sure;
   if (probability_of_best >= kSure * known)

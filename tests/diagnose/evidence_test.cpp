@@ -45,5 +45,19 @@ TEST_F(Explained, WhereNothingIsHiddenTheMisfitIsWhatChanceMakesOfIt) {
   EXPECT_NEAR(chi2 / numbers, 1, 0.1);
 }
 
+TEST_F(Explained, NobodyForgetsHalfABall) {
+  std::vector<Suspect> in_balls = mill_.suspects();
+  in_balls[1].sets[0].whole = true;  // at full strength, one ball
+  Random random(79);
+  const auto gain = [&](double strength) {  // of evidence, by counting in balls
+    const SignatureRun run = mill_.run(random, {0, strength, 0});
+    const std::vector<Measured> seen{
+        {mill_.response(), mill_.response()->whitened(observed_at(run.seen, kSpans[0])), run.revolutions}};
+    return explain(seen, in_balls, {1}).log_evidence - explain(seen, mill_.suspects(), {1}).log_evidence;
+  };
+  EXPECT_GT(gain(1), 0);
+  EXPECT_LT(gain(0.5), -5);
+}
+
 }  // namespace
 }  // namespace tumble::diagnose

@@ -44,6 +44,8 @@ TEST(Ruling, DoesNotDecideWhatTheDataLeaveOpen) {
   EXPECT_EQ(open.finding, Finding::kAmbiguous);
   EXPECT_EQ(open.names, (Names{"rolling_resistance", "cohesion"}));
   EXPECT_EQ(ruled({{{}, 0.6}, {{0}, 0.4}}).finding, Finding::kAgreement);
+  EXPECT_EQ(ruled({{{}, 0.4}, {{0}, 0.3}, {{1}, 0.3}}).finding, Finding::kAmbiguous);
+  EXPECT_EQ(ruled({{{}, 0.4}, {{0}, 0.1}, {{1}, 0.1}, {{2}, 0.1}, {{0, 1}, 0.02}}).finding, Finding::kAgreement);
   EXPECT_EQ(ruled({{{0}, 0.3}}, 0.7).finding, Finding::kUnknownEffect);
 }
 
