@@ -9,11 +9,12 @@
 #include "cli/diagnosis_runs.h"
 #include "cli/measurements.h"
 #include "cli/options.h"
+#include "cli/signature_library.h"
+#include "cli/tasks.h"
 #include "cli/verbs.h"
 #include "core/error.h"
 #include "core/parallel_for.h"
 #include "diagnose/verdict.h"
-#include "io/chunk_store.h"
 #include "io/config_file.h"
 #include "io/config_keys.h"
 #include "io/diagnosis_file.h"
@@ -42,17 +43,6 @@ fs::path library_folder(const Options& o) {
   throw InputError("--library", "is not given, and neither XDG_CACHE_HOME nor HOME says where a cache may be; give it");
 }
 
-std::vector<double> values_of(const Config& mill, const std::vector<UncertainKey>& uncertain) {
-  std::vector<double> values;
-  for (const UncertainKey& u : uncertain) {
-    values.push_back(io::number_at(mill, u.key));
-    if (std::isnan(values.back()))
-      throw InputError(u.place,
-                       "is uncertain about a value that MILL.toml does not give; give it there, or remove this");
-  }
-  return values;
-}
-
 // The library goes a little to both sides of what MILL.toml has, however wide the range.
 void check_room(const Config& mill, const UncertainKey& u, double value) {
   constexpr double kLittle = 0.1;
@@ -68,9 +58,8 @@ void check_room(const Config& mill, const UncertainKey& u, double value) {
 
 void diagnose_mill(const Options& o) {
   limit_threads(o.threads);
-  if (o.engine == "slurm")
-    throw InputError("--engine", "slurm is not in this version; local uses all cores of this machine");
-  if (o.engine != "local") throw InputError("--engine", "is \"" + o.engine + "\"; give local");
+  const bool by_slurm = is_slurm(o.engine);
+  if (by_slurm) check_slurm();
   const Config mill = io::read_config(o.config);
   check_complete(mill);
   const Experiments experiments = io::read_experiments(o.measured);
@@ -96,25 +85,22 @@ void diagnose_mill(const Options& o) {
   request.seeds = o.seeds;
   io::make_output_folder(o.output);
 
+  LibraryPlan library{library_folder(o), o.blocks, request.uncertain, {}};
+  for (const diagnose::Measurement& m : request.measurements)
+    if (!m.experiment.hold_out) library.mills.push_back(m.config);
+  request.conditions = conditions_of(library);
   ProgressLine line(o, "library of signatures", "what was simulated is kept; the same command goes on with it");
-  std::vector<io::ChunkStore> stores;
-  for (const diagnose::Measurement& m : request.measurements) {
-    if (m.experiment.hold_out) continue;
-    request.conditions.push_back(diagnose::make_condition(
-        m.config, request.uncertain, values_of(m.config, request.uncertain), io::to_toml(diagnose::bare(m.config))));
-    stores.emplace_back(library_folder(o), request.conditions.back().definition);
+  std::size_t simulated = 0;
+  if (by_slurm) {
+    ProgressLine queue(o, "library by Slurm", "what was simulated is kept; the same command goes on with it");
+    simulated = make_library_by_slurm(library, o.output / "slurm", o.threads, queue.callback());
   }
+  simulated += build_library(library, request.conditions, line.callback());
+
+  ProgressLine proving(o, "putting to the proof", "the library is kept; the same command goes on from it");
   const diagnose::MillWith mill_with = [](const Config& config, const std::vector<std::string>& sets) {
     return io::with_sets(config, sets);
   };
-  diagnose::LibrarySink sink;
-  sink.read = [&](std::size_t c, std::size_t chunk, auto& rows) { return stores[c].read(chunk, rows); };
-  sink.write = [&](std::size_t c, std::size_t chunk, const auto& rows) { stores[c].write(chunk, rows); };
-  sink.progress = line.callback();
-  const std::size_t simulated =
-      diagnose::build_library(request.conditions, request.uncertain, o.blocks, mill_with, sink);
-
-  ProgressLine proving(o, "putting to the proof", "the library is kept; the same command goes on from it");
   Diagnosis d = diagnose::find_out(request, mill_with, proving.callback());
   d.mill = o.config.string();
   d.measured = o.measured.string();
@@ -152,7 +138,7 @@ void add_diagnose(CLI::App& app) {
   verb->add_option("-o,--output", o->output, "Folder for report.html, verdict.json, model.toml, runs")->required();
   verb->add_option("--library", o->library,
                    "Folder of the library of signatures (default: $XDG_CACHE_HOME/tumble or ~/.cache/tumble)");
-  verb->add_option("--engine", o->engine, "Where simulations run: local")->capture_default_str();
+  add_engine(*verb, o->engine);
   verb->add_option("--blocks", o->blocks, "Size of the library: fewer blocks are quicker and tell less")
       ->check(CLI::Range(2, 100))
       ->capture_default_str();

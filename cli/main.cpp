@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "cli/program.h"
+#include "cli/tasks.h"
 #include "cli/verbs.h"
 
 // Films and pictures need OpenCV, libav and OSMesa, which bring 250 libraries: to load them takes a quarter of a second
@@ -24,7 +25,7 @@ struct Verb {
 };
 constexpr Verb kWithoutPictures[] = {
     {"simulate", add_simulate}, {"sweep", add_sweep}, {"parameters", add_parameters},
-    {"effects", add_effects},   {"shell", add_shell},
+    {"effects", add_effects},   {"shell", add_shell}, {"task", add_task},
 };
 
 int hand_over(const char* program, char** argv) {

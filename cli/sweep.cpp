@@ -3,11 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ctime>
 #include <memory>
 #include <nlohmann/json.hpp>
 
 #include "cli/options.h"
+#include "cli/slurm_queue.h"
+#include "cli/sweep_plan.h"
+#include "cli/tasks.h"
 #include "cli/vary.h"
 #include "cli/verbs.h"
 #include "core/error.h"
@@ -38,24 +40,9 @@ struct Options : CommonOptions {
   bool resume = false, dry_run = false;
 };
 
-struct Plan {
-  Sweep sweep;
-  Config mill;
-  std::vector<std::string> sets_at(std::size_t run) const {
-    std::vector<std::string> sets;
-    const auto index = sweep.at(run / sweep.repeats);
-    for (std::size_t k = 0; k < index.size(); ++k)
-      sets.push_back(sweep.varied[k].key + "=" + sweep.varied[k].values[index[k]]);
-    sets.push_back(fmt::format("run.seed={}", sweep.first_seed + run % sweep.repeats));
-    return sets;
-  }
-  Config config_of(std::size_t run) const { return io::with_sets(mill, sets_at(run)); }
-  std::size_t runs() const { return sweep.points() * sweep.repeats; }
-};
-
 // Reads all, and asks of every run whether it can be: a mistake is to show now, not after a night.
-Plan make_plan(const Options& o) {
-  Plan plan;
+SweepPlan make_plan(const Options& o) {
+  SweepPlan plan;
   plan.mill = io::read_config(o.config, o.sets);
   std::vector<std::string> notes;
   double runs = o.repeats;
@@ -89,36 +76,10 @@ Plan make_plan(const Options& o) {
   return plan;
 }
 
-// A short try of the first run tells what a ball costs for a second; the rest is counting.
-void dry_run(const Plan& plan, const Options& o) {
-  const auto seconds_for = [&](double revolutions) {
-    Config probe = plan.config_of(0);
-    probe.run.spin_up_auto = false;
-    probe.run.spin_up = 0;
-    probe.run.revolutions = revolutions;
-    const std::clock_t start = std::clock();  // the processor's: others at work on the machine do not show
-    diagnose::run_once(probe, [](double) { stop_if_asked("nothing was written"); });
-    return double(std::clock() - start) / CLOCKS_PER_SEC;
-  };
-  const auto work = [](const Config& c, double revolutions) {  // balls x simulated seconds
-    double balls = 0;
-    for (const int n : class_counts(c)) balls += n;
-    return balls * revolutions * 60 / speed_rpm(c.mill);
-  };
-  constexpr double kShort = 0.05, kLong = 0.25, kAutoSpinUp = 30;
-  const Config first = plan.config_of(0);
-  const double begin = seconds_for(kShort);
-  const double each = std::max(0.0, seconds_for(kLong) - begin) / work(first, kLong - kShort);
-  double total = 0;
-  bool automatic = false;
-  for (std::size_t p = 0; p < plan.sweep.points(); ++p) {
-    const Config c = plan.config_of(p * plan.sweep.repeats);
-    automatic = automatic || c.run.spin_up_auto;
-    total += (begin + each * work(c, (c.run.spin_up_auto ? kAutoSpinUp : c.run.spin_up) + c.run.revolutions)) *
-             double(plan.sweep.repeats);
-  }
+void dry_run(const SweepPlan& plan, const Options& o) {
   const int threads = static_cast<int>(std::min<std::size_t>(plan.runs(), static_cast<std::size_t>(thread_limit())));
-  const double wall = total / threads;
+  const double wall = seconds_of(plan) / threads;
+  const bool automatic = has_auto_spin_up(plan);
   print(o.json ? nlohmann::ordered_json{{"runs", plan.runs()},
                                         {"points", plan.sweep.points()},
                                         {"threads", threads},
@@ -157,7 +118,8 @@ std::string summary(const Sweep& sweep) {
 }
 
 // What shows a finished sweep. `keep`: files that stay as they are.
-void write_tables(const Options& o, const Plan& plan, const Experiments& measured, const std::vector<fs::path>& keep) {
+void write_tables(const Options& o, const SweepPlan& plan, const Experiments& measured,
+                  const std::vector<fs::path>& keep) {
   const auto wanted = [&](const fs::path& file) {
     return !file.empty() && std::find(keep.begin(), keep.end(), file) == keep.end();
   };
@@ -176,7 +138,7 @@ bool is_done(const Options& o, const Sweep& sweep) {
 }
 
 // From its file: what is asked for and is not there yet is written, nothing is simulated.
-void show_again(const Options& o, Plan& plan, const Experiments& measured, const std::vector<fs::path>& files) {
+void show_again(const Options& o, SweepPlan& plan, const Experiments& measured, const std::vector<fs::path>& files) {
   plan.sweep.runs = io::read_sweep_runs(o.output, plan.sweep);
   std::vector<fs::path> there;
   std::error_code error;
@@ -193,14 +155,13 @@ void show_again(const Options& o, Plan& plan, const Experiments& measured, const
 
 void sweep(Options o) {
   limit_threads(o.threads);
-  if (o.engine == "slurm")
-    throw InputError("--engine", "slurm is not in this version; local uses all cores of this machine");
-  if (o.engine != "local") throw InputError("--engine", "is \"" + o.engine + "\"; give local");
-  Plan plan = make_plan(o);
+  const bool by_slurm = is_slurm(o.engine);
+  SweepPlan plan = make_plan(o);
   Experiments measured;
   if (!o.measured.empty()) measured = io::read_measured(o.measured);
   for (const Experiment& e : measured.list) io::config_of(plan.mill, e);  // fits the mill
   if (o.dry_run) return dry_run(plan, o);
+  if (by_slurm) check_slurm();
   if (o.output.empty()) throw InputError("--output", "is required; give -o SWEEP.h5");
   if (o.page.empty()) o.page = fs::path(o.output).replace_extension(".html");
   std::vector<fs::path> files{o.page};  // beside the output itself
@@ -234,14 +195,31 @@ void sweep(Options o) {
                "; --resume would have gone on with it");
 
   io::RunJournal journal(journal_path, o.resume);
+  fs::path queue = o.output;
+  queue += ".slurm";
+  if (!o.resume) discard_slurm_queue(queue);
+  const std::string if_stopped = "the finished runs are kept; go on with: tumble sweep ... --resume";
+  if (by_slurm) {
+    ProgressLine line(o, "sweeping by Slurm", if_stopped);
+    sweep_by_slurm(plan, journal, queue, o.threads, line.callback());
+  } else {
+    TasksJournals(queue).add_to(journal);  // of a sweep by Slurm that was interrupted
+  }
+  ProgressLine line(o, "sweeping", if_stopped);
   diagnose::CampaignSink sink;
-  ProgressLine line(o, "sweeping", "the finished runs are kept; go on with: tumble sweep ... --resume");
   sink.progress = line.callback();
-  sink.known = [&](std::size_t run, RunOutcome& outcome) { return journal.find(plan.config_of(run), outcome); };
-  sink.finished = [&](std::size_t run, const Config& config, const RunOutcome& outcome) {
-    journal.add(config, outcome);
+  const auto tell_failure = [&](std::size_t run, const RunOutcome& outcome) {
     if (!outcome.error.empty())
       say(o, fmt::format("run {} ({}) failed: {}", run, fmt::join(plan.sets_at(run), ", "), outcome.error));
+  };
+  sink.known = [&](std::size_t run, RunOutcome& outcome) {
+    const bool known = journal.find(plan.config_of(run), outcome);
+    if (known) tell_failure(run, outcome);
+    return known;
+  };
+  sink.finished = [&](std::size_t run, const Config& config, const RunOutcome& outcome) {
+    journal.add(config, outcome);
+    tell_failure(run, outcome);
   };
   plan.sweep.runs = diagnose::run_campaign(
       plan.runs(), [&](std::size_t run) { return plan.config_of(run); }, sink);
@@ -253,6 +231,7 @@ void sweep(Options o) {
   write_tables(o, plan, measured, {});
   io::write_sweep(o.output, plan.sweep);  // last: where it stands, the sweep is complete
   journal.remove();
+  discard_slurm_queue(queue);
   if (o.json) print(summary(plan.sweep));
 }
 
@@ -278,7 +257,7 @@ void add_sweep(CLI::App& app) {
   verb->add_option("--figures", o->figures,
                    "Folder for torque, power, toe and shoulder as .svg, .pdf and .csv for papers");
   verb->add_option("--measured", o->measured, "EXPERIMENTS.toml, or CSV, whose points the figures show");
-  verb->add_option("--engine", o->engine, "local: all cores of this machine")->capture_default_str();
+  add_engine(*verb, o->engine);
   verb->add_flag("--resume", o->resume,
                  "Go on with an interrupted sweep; of a complete one write the tables and figures that are missing");
   verb->add_flag("--dry-run", o->dry_run, "Only say how many runs, and about how long they take");

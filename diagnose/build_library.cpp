@@ -3,11 +3,13 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <map>
 #include <mutex>
 
 #include "core/error.h"
 #include "core/fingerprint.h"
 #include "diagnose/in_turns.h"
+#include "diagnose/library_chunks.h"
 
 namespace tumble::diagnose {
 namespace {
@@ -49,10 +51,6 @@ Run mill_of(const Condition& condition, const std::vector<UncertainKey>& keys, c
   }
 }
 
-struct Chunk {
-  std::size_t condition, block, first, count, number;
-};
-
 }  // namespace
 
 Condition make_condition(const Config& config, const std::vector<UncertainKey>& uncertain, std::vector<double> middle,
@@ -69,23 +67,30 @@ Condition make_condition(const Config& config, const std::vector<UncertainKey>& 
   return condition;
 }
 
-std::size_t build_library(std::vector<Condition>& conditions, const std::vector<UncertainKey>& uncertain,
-                          std::size_t blocks, const MillWith& mill_with, const LibrarySink& sink) {
-  std::vector<Chunk> chunks;
-  std::vector<std::vector<std::vector<SignatureAsked>>> asked(conditions.size());  // by condition and block
+std::vector<LibraryChunk> plan_chunks(const std::vector<Condition>& conditions,
+                                      const std::vector<UncertainKey>& uncertain, std::size_t blocks) {
+  std::vector<LibraryChunk> chunks;
   for (std::size_t b = 0; b < blocks; ++b)
     for (std::size_t c = 0; c < conditions.size(); ++c) {
-      asked[c].push_back(plan_block(b, uncertain.size(), conditions[c].suspects));
-      const std::size_t runs = asked[c].back().size(), per_block = (runs + kChunk - 1) / kChunk;
+      const std::size_t runs = plan_block(b, uncertain.size(), conditions[c].suspects).size();
+      const std::size_t per_block = (runs + kChunk - 1) / kChunk;
       for (std::size_t k = 0; k < per_block; ++k)
         chunks.push_back({c, b, k * kChunk, std::min(kChunk, runs - k * kChunk), b * per_block + k});
     }
+  return chunks;
+}
 
+std::size_t build_chunks(std::vector<Condition>& conditions, const std::vector<UncertainKey>& uncertain,
+                         const std::vector<LibraryChunk>& chunks, const MillWith& mill_with, const LibrarySink& sink) {
+  std::map<std::pair<std::size_t, std::size_t>, std::vector<SignatureAsked>> asked;  // by condition and block
+  for (const LibraryChunk& chunk : chunks)
+    if (auto& block = asked[{chunk.condition, chunk.block}]; block.empty())
+      block = plan_block(chunk.block, uncertain.size(), conditions[chunk.condition].suspects);
   std::vector<std::vector<SignatureRun>> done(chunks.size());
   std::mutex filing;
   std::size_t simulated = 0;
   in_turns(chunks.size(), sink.progress, [&](std::size_t i, const Progress& own) {
-    const Chunk& chunk = chunks[i];
+    const LibraryChunk& chunk = chunks[i];
     const Condition& condition = conditions[chunk.condition];
     const ObservationLayout layout(condition.config.mill.lifters.count);
     std::vector<std::vector<float>> rows;
@@ -96,7 +101,7 @@ std::size_t build_library(std::vector<Condition>& conditions, const std::vector<
     const bool known = rows.size() == chunk.count;
     std::vector<std::vector<float>> fresh;
     for (std::size_t k = 0; k < chunk.count; ++k) {
-      const SignatureAsked& a = asked[chunk.condition][chunk.block][chunk.first + k];
+      const SignatureAsked& a = asked.at({chunk.condition, chunk.block})[chunk.first + k];
       const Run mill = mill_of(condition, uncertain, a, mill_with);
       SignatureRun run;
       if (known) {
@@ -130,6 +135,11 @@ std::size_t build_library(std::vector<Condition>& conditions, const std::vector<
         ++condition.failed;
     }
   return simulated;
+}
+
+std::size_t build_library(std::vector<Condition>& conditions, const std::vector<UncertainKey>& uncertain,
+                          std::size_t blocks, const MillWith& mill_with, const LibrarySink& sink) {
+  return build_chunks(conditions, uncertain, plan_chunks(conditions, uncertain, blocks), mill_with, sink);
 }
 
 }  // namespace tumble::diagnose

@@ -30,10 +30,14 @@ ChunkStore::ChunkStore(const fs::path& root, const std::string& definition)
 
 fs::path ChunkStore::file_of(std::size_t chunk) const { return folder_ / fmt::format("{:05}.h5", chunk); }
 
+bool ChunkStore::has(std::size_t chunk) const {
+  std::error_code error;
+  return fs::exists(file_of(chunk), error);
+}
+
 bool ChunkStore::read(std::size_t chunk, Rows& rows) const {
   const fs::path path = file_of(chunk);
-  std::error_code error;
-  if (!fs::exists(path, error)) return false;
+  if (!has(chunk)) return false;
   const auto held = hdf5::lock();
   try {
     const hdf5::File file = hdf5::open_file(path, hdf5::Access::kRead);

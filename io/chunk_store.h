@@ -16,6 +16,7 @@ class ChunkStore {
   // folder cannot be used.
   ChunkStore(const std::filesystem::path& root, const std::string& definition);
 
+  bool has(std::size_t chunk) const;  // is there a file?
   // False where the chunk is not there, or is not what was written.
   bool read(std::size_t chunk, Rows& rows) const;
   void write(std::size_t chunk, const Rows& rows) const;  // throws WorkError

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstring>
 #include <fstream>
+#include <functional>
 #include <nlohmann/json.hpp>
 
 #include "core/error.h"
@@ -19,8 +20,6 @@ namespace fs = std::filesystem;
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-std::uint64_t key_of(const Config& config) { return fingerprint(to_toml(config)); }
 
 Json header() { return {{"journal_of_runs", 1}, {"tumble", kVersion}}; }
 
@@ -62,10 +61,33 @@ RunOutcome outcome_of(const Json& j) {
 
 std::string text_of(const Json& j) { return j.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n"; }
 
+// The finished runs of a journal that begin at `from`, which becomes where its whole lines end. One of another version
+// holds none.
+void read_runs(const fs::path& path, std::uintmax_t& from,
+               const std::function<void(std::uint64_t key, const RunOutcome& run)>& use) {
+  std::ifstream file(path, std::ios::binary);
+  std::string line;
+  if (from == 0) {
+    if (!std::getline(file, line) || file.eof() || line + "\n" != text_of(header())) return;
+    from = line.size() + 1;
+  }
+  file.seekg(static_cast<std::streamoff>(from));
+  while (std::getline(file, line) && !file.eof()) {
+    try {
+      const Json j = Json::parse(line);
+      use(j.at("run").get<std::uint64_t>(), outcome_of(j));
+    } catch (const nlohmann::json::exception&) {
+      return;
+    }
+    from += line.size() + 1;
+  }
+}
+
 }  // namespace
 
 RunJournal::RunJournal(fs::path path, bool resume) : path_(std::move(path)) {
-  const std::uintmax_t whole = resume ? read() : 0;
+  std::uintmax_t whole = 0;
+  if (resume) read_runs(path_, whole, [&](std::uint64_t key, const RunOutcome& run) { known_[key] = run; });
   file_ = open(path_.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
   if (file_ < 0 || ftruncate(file_, static_cast<off_t>(whole)) != 0)
     throw WorkError(path_.string(), std::string("cannot be written: ") + std::strerror(errno));
@@ -76,21 +98,12 @@ RunJournal::~RunJournal() {
   if (file_ >= 0) close(file_);
 }
 
-std::uintmax_t RunJournal::read() {
-  std::ifstream file(path_, std::ios::binary);
-  std::string line;
-  if (!std::getline(file, line) || file.eof() || line + "\n" != text_of(header())) return 0;
-  std::uintmax_t whole = line.size() + 1;
-  while (std::getline(file, line) && !file.eof()) {
-    try {
-      const Json j = Json::parse(line);
-      known_[j.at("run").get<std::uint64_t>()] = outcome_of(j);
-    } catch (const nlohmann::json::exception&) {
-      break;
-    }
-    whole += line.size() + 1;
-  }
-  return whole;
+std::uint64_t RunJournal::key_of(const Config& config) { return fingerprint(to_toml(config)); }
+
+void RunJournal::take(const fs::path& other, std::uintmax_t& from) {
+  read_runs(other, from, [&](std::uint64_t key, const RunOutcome& run) {
+    if (!has(key)) add(key, run);
+  });
 }
 
 bool RunJournal::find(const Config& config, RunOutcome& outcome) const {
@@ -100,8 +113,9 @@ bool RunJournal::find(const Config& config, RunOutcome& outcome) const {
   return true;
 }
 
-void RunJournal::add(const Config& config, const RunOutcome& outcome) {
-  const std::uint64_t key = key_of(config);
+void RunJournal::add(const Config& config, const RunOutcome& outcome) { add(key_of(config), outcome); }
+
+void RunJournal::add(std::uint64_t key, const RunOutcome& outcome) {
   append(text_of(json_of(key, outcome)));
   known_[key] = outcome;
 }

@@ -23,10 +23,18 @@ class RunJournal {
   std::size_t size() const { return known_.size(); }
   bool find(const Config& config, RunOutcome& outcome) const;
   void add(const Config& config, const RunOutcome& outcome);  // throws WorkError where the disk refuses
-  void remove();                                              // once its content stands elsewhere
+  // Adds what another journal, which may be growing meanwhile, holds beyond the byte `from`; that moves on to the end
+  // of what was whole. A file that is not there, or of another version, holds nothing.
+  void take(const std::filesystem::path& other, std::uintmax_t& from);
+
+  // A run's name in the file, for whoever asks after it often.
+  static std::uint64_t key_of(const Config& config);
+  bool has(std::uint64_t key) const { return known_.contains(key); }
+
+  void remove();  // once its content stands elsewhere
 
  private:
-  std::uintmax_t read();  // bytes that are whole lines
+  void add(std::uint64_t key, const RunOutcome& outcome);
   void append(const std::string& line);
 
   std::filesystem::path path_;

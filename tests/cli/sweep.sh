@@ -51,7 +51,7 @@ refused 'of something else' sweep "$mill" --vary mill.speed=0.6,0.7 "${short[@]}
 refused exists sweep "$mill" --vary mill.speed=0.6,0.7 "${short[@]}" -o b.h5
 refused 'more than a million' sweep "$mill" --vary mill.speed=0.1:1.1:0.0001 --vary contact.friction=0.1:0.9:0.0005 -o c.h5
 refused 'did you mean mill.speed' sweep "$mill" --vary mill.sped=0.1,0.2 -o c.h5
-refused slurm sweep "$mill" --vary mill.speed=0.1,0.2 --engine slurm -o c.h5
+refused 'give one of local, slurm' sweep "$mill" --vary mill.speed=0.1,0.2 --engine sluurm -o c.h5
 
 refused 'says the same as mill.speed; vary one' sweep "$mill" --vary mill.speed=0.6,0.7 --vary mill.speed_rpm=30,40 -o c.h5
 refused 'value 0.60 twice' sweep "$mill" --vary mill.speed=0.6,0.60 -o c.h5
