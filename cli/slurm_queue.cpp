@@ -31,7 +31,7 @@ using Clock = std::chrono::steady_clock;
 
 constexpr std::size_t kMostTasks = 1000;  // of an array: Slurm's own limit (MaxArraySize) is 1001 unless configured
 constexpr int kTries = 3;
-constexpr auto kPoll = 2s, kNap = 100ms, kPatience = 600s;
+constexpr std::chrono::milliseconds kPoll = 2s, kNap = 100ms, kPatience = 600s;
 constexpr std::size_t kLargestManifestMiB = 256;  // a million pieces are 8
 constexpr const char* kScript = "#!/bin/sh\nexec \"$@\" \"$SLURM_ARRAY_TASK_ID\"\n";
 

@@ -13,13 +13,13 @@
 namespace tumble::cli {
 
 struct SlurmWork {
-  std::filesystem::path folder;                    // the queue's own, seen by all nodes; removed when all is done
-  std::string kind;                                // who does it: see tasks.cpp
-  nlohmann::json plan;                             // all that the tasks need to know, the numbers of their pieces apart
-  std::size_t pieces = 0;                          // in all
-  std::size_t per_task = 1;                        // at least so many to a task
-  int threads = 1;                                 // of a task
-  std::function<std::vector<std::size_t>()> left;  // the pieces without a result; asked again and again
+  std::filesystem::path folder;  // the queue's own, seen by all nodes; removed when all is done
+  std::string kind;              // who does it: see tasks.cpp
+  nlohmann::json plan;           // all that the tasks need to know, the numbers of their pieces apart
+  std::size_t pieces = 0;        // in all
+  std::size_t per_task = 1;      // at least so many to a task
+  int threads = 1;               // of a task
+  std::function<std::vector<std::size_t>()> left{};  // the pieces without a result; asked again and again
 };
 
 // Throws WorkError in one line where Slurm is not installed or its controller does not answer.

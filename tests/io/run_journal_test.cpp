@@ -87,5 +87,39 @@ TEST_F(RunJournalFile, SurvivesBeingCutAtAnyByte) {
   }
 }
 
+// Another process appends while it is read: at every moment what is whole comes over, once, and to the bit.
+TEST_F(RunJournalFile, TakesWhatAnotherHoldsAsItGrows) {
+  const auto theirs = folder_ / "theirs", seen = folder_ / "seen";
+  {
+    RunJournal journal(theirs, false);
+    for (int seed = 1; seed <= 3; ++seed) journal.add(mill_with_seed(std::uint64_t(seed)), outcome_of(seed));
+  }
+  std::ifstream file(theirs, std::ios::binary);
+  const std::string whole((std::istreambuf_iterator<char>(file)), {});
+  RunJournal ours(folder_ / "ours", false);
+  ours.add(mill_with_seed(2), outcome_of(7));  // is known already and stays
+  std::uintmax_t read = 0;
+  ours.take(seen, read);  // not there yet
+  for (std::size_t length = 0; length < whole.size(); length += 31) {
+    std::ofstream(seen, std::ios::binary) << whole.substr(0, length);
+    ours.take(seen, read);
+    EXPECT_LE(read, length);
+  }
+  std::ofstream(seen, std::ios::binary) << whole;
+  ours.take(seen, read);
+  EXPECT_EQ(read, whole.size());
+  std::ofstream(seen, std::ios::binary) << "{\"journal_of_runs\":1,\"tumble\":\"another\"}\n" << whole;
+  ours.take(seen, read = 0);
+  EXPECT_EQ(read, 0u);
+
+  const RunJournal kept(folder_ / "ours", true);
+  EXPECT_EQ(kept.size(), 3u);
+  for (const auto& [seed, x] : {std::pair{1, 1}, {2, 7}, {3, 3}}) {
+    RunOutcome found;
+    ASSERT_TRUE(kept.find(mill_with_seed(std::uint64_t(seed)), found));
+    EXPECT_TRUE(same(found, outcome_of(x)));
+  }
+}
+
 }  // namespace
 }  // namespace tumble::io
