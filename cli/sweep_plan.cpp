@@ -13,7 +13,8 @@ namespace tumble::cli {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr double kTaskSeconds = 20;  // to ask Slurm for a task costs half a second
+constexpr double kTaskSeconds = 20;  // a task by itself costs half a second
+constexpr double kFewTasks = 16;     // a short sweep is spread over so many
 
 nlohmann::json json_of(const SweepPlan& plan) {
   auto varied = nlohmann::json::array();
@@ -106,7 +107,8 @@ void sweep_by_slurm(const SweepPlan& plan, io::RunJournal& journal, const fs::pa
   };
   if (work.left().empty()) return;
   const double each = seconds_of(plan) / double(plan.runs());
-  work.per_task = static_cast<std::size_t>(std::clamp(kTaskSeconds / each, 1.0, double(plan.runs())));
+  work.per_task =
+      static_cast<std::size_t>(std::max(1.0, std::min(kTaskSeconds / each, double(plan.runs()) / kFewTasks)));
   work.threads = std::max(1, threads);
   do_by_slurm(work, progress);
 }

@@ -40,8 +40,7 @@ void add_task(CLI::App& app) {
 
 void add_engine(CLI::App& verb, std::string& engine) {
   verb.add_option("--engine", engine,
-                  "Where simulations run: local, on all cores of this machine, or slurm, as job arrays of --threads "
-                  "cores a task (1); partition, account, time by SBATCH_PARTITION, SBATCH_ACCOUNT, SBATCH_TIMELIMIT")
+                  "local: all cores of this machine; slurm: a cluster's, by tasks of --threads cores (one)")
       ->capture_default_str();
 }
 

@@ -8,7 +8,7 @@ if ! PATH=$PATH:/usr/sbin command -v sbatch slurmctld slurmd munged >/dev/null; 
   exit 77
 fi
 source "$(dirname "$0")/promises.sh"
-source "$(dirname "$0")/one_machine_slurm.sh"
+source "$source/tests/cli/one_machine_slurm.sh"
 same() { cmp -s "$1" "$2" || fail "$1 and $2 differ"; }
 wait_until() {  # SECONDS COMMAND...
   for _ in $(seq $((10 * $1))); do
@@ -57,7 +57,7 @@ CONF
 
 # 500 runs, through everything.
 sweep=(sweep "$folder/mill.toml" --vary mill.speed=0.5:0.9:0.1 --vary contact.friction=0.1:0.3:0.05 --repeat 20 --quiet
-  ${SWEEP_SETS:---set run.revolutions=20})
+  --set run.spin_up=0.5 --set run.revolutions=5)
 "$tumble" "${sweep[@]}" -o local.h5 --csv local.csv || fail "the local sweep"
 [ "$(wc -l <local.csv)" -eq 501 ] || fail "not 500 runs"
 by_slurm=("${sweep[@]}" --engine slurm --resume -o "$folder/s.h5" --csv "$folder/s.csv")
@@ -69,14 +69,14 @@ finished() { cat "$folder"/s.h5.slurm/*.task-* 2>/dev/null | grep -c '"run"'; }
 more_than() { [ "$(finished)" -gt "$1" ]; }
 
 start
-wait_until 60 more_than 10
+wait_until 300 more_than 10
 kill -INT $command_pid
 wait $command_pid
 [ $? -eq 1 ] && grep -q 'finished runs are kept; go on with' err.txt || fail "Ctrl-C: $(cat err.txt)"
 wait_until 20 none_there
 kept=$(finished)
 start
-wait_until 60 more_than $((kept + 20))
+wait_until 300 more_than $((kept + 20))
 kill -9 $command_pid
 wait $command_pid 2>/dev/null
 jobs_there || fail "the jobs of a start that was killed are gone"
@@ -84,9 +84,9 @@ jobs=$(squeue --noheader -o %F | sort -u)
 start
 sleep 3
 [ "$(squeue --noheader -o %F | sort -u)" = "$jobs" ] || fail "jobs that were there are submitted again: $(squeue)"
-worker=$(pgrep -f "tumble task $PWD/.*s.h5.slurm/[0-9]*.json" | tail -n 1)
-kill -9 "$worker" || fail "no worker to kill"
-wait_until 60 more_than $((kept + 60))
+kill_worker() { kill -9 "$(pgrep -f "^$tumble task $PWD/.*s.h5.slurm/[0-9]*.json" | tail -n 1)" 2>/dev/null; }
+wait_until 300 kill_worker
+wait_until 300 more_than $((kept + 60))
 stop_controller
 sleep 2
 start_controller
@@ -103,11 +103,11 @@ mkdir broken
 cp "$tumble" broken/submit
 printf '#!/bin/sh\necho "no licence for this node" >&2\nexit 3\n' >broken/tumble
 chmod +x broken/tumble
-few=("${sweep[@]}" --set run.revolutions=1 --engine slurm -o few.h5)
-stopped_with 1 '500 of 500 pieces of work have no result, and 3 rounds .* no licence for this node' broken/submit "${few[@]}"
+few=(sweep "$folder/mill.toml" --vary mill.speed=0.6,0.7,0.8 --set run.revolutions=1 --quiet --engine slurm -o few.h5)
+stopped_with 1 '3 of 3 pieces of work have no result, and 3 rounds .* no licence for this node' broken/submit "${few[@]}"
 wait_until 20 none_there
 SBATCH_PARTITION=nowhere stopped_with 1 'nvalid partition' "$tumble" "${few[@]}"
-PATH=/nowhere stopped_with 1 'squeue cannot be run .*install Slurm' "$tumble" "${few[@]}"
+stopped_with 1 'squeue cannot be run .*install Slurm' env PATH=/nowhere "$tumble" "${few[@]}"
 [ ! -e few.h5 ] || fail "a sweep without results left its file"
 
 # A library of signatures: the same files.
