@@ -9,7 +9,7 @@ namespace tumble::diagnose {
 namespace {
 
 // Before anything is seen. Each kind's share is divided among its members.
-constexpr double kNone = 0.3, kSingles = 0.5, kPairs = 0.15, kUnknown = 0.05;
+constexpr double kNone = 0.5, kSingles = 0.35, kPairs = 0.1, kUnknown = 0.05;
 constexpr std::size_t kPairedWith = 6;  // likeliest singles, with each of which every other suspect is paired
 // Chi2 per number that an unknown effect leaves behind, in units of what chance does: anything up to this.
 constexpr double kMostMisfit = 30;

@@ -10,8 +10,8 @@ namespace {
 
 constexpr double kSure = 0.9;                     // probability of one name beside which the others are no rivals
 constexpr double kRuledOut = 0.01, kClearly = 9;  // probability; chi2
-constexpr double kCredible = 0.95, kMostly = 0.5;
-constexpr double kEnough = 0.3, kBeside = 1.0 / 3;  // of nobody's guilt, where nobody else's comes near
+constexpr double kCredible = 0.95;
+constexpr double kHidden = 0.35;  // error of a strength beside which half the full one does not show
 
 NameKind kind_of(const Suspect& suspect) {
   return suspect.kind == SuspectKind::kPhysics ? NameKind::kPhysics : NameKind::kArtefact;
@@ -36,6 +36,18 @@ std::string at_lifter(std::string set, int lifter) {
   const std::string first = "lifters=[0]";
   if (set.ends_with(first)) set.replace(set.size() - first.size(), first.size(), fmt::format("lifters=[{}]", lifter));
   return set;
+}
+
+// Those of whom these data would show little, were they guilty.
+std::set<std::string> hidden(const Posterior& p, std::span<const Suspect> suspects) {
+  std::set<std::string> names;
+  for (const Accusation& a : p.accusations) {
+    const Explanation& e = a.explanation;
+    const auto keys = static_cast<int>(e.places.size()) - static_cast<int>(suspects.size());
+    if (e.suspects.size() == 1 && a.probability > kRuledOut && e.se(keys + e.suspects.front()) > kHidden)
+      names.merge(names_of(a, suspects));
+  }
+  return names;
 }
 
 }  // namespace
@@ -95,9 +107,11 @@ Ruling rule(const Posterior& p, std::span<const Suspect> suspects) {
   std::stable_sort(sets.begin(), sets.end(), [](const auto& a, const auto& b) { return a.second > b.second; });
   const auto& [best, probability_of_best] = sets.front();
   const double known = 1 - p.unknown;
-  const bool alone = std::all_of(suspects.begin(), suspects.end(),
-                                 [&](const Suspect& s) { return p.inclusion(suspects, s.name) < kBeside * p.none(); });
-  if (best.empty() && probability_of_best > (alone ? kEnough : kMostly) * known) return {Finding::kAgreement, {}};
+  const bool likeliest = std::all_of(suspects.begin(), suspects.end(),
+                                     [&](const Suspect& s) { return p.inclusion(suspects, s.name) < p.none(); });
+  std::set<std::string> open;
+  if (best.empty()) open = hidden(p, suspects);
+  if (best.empty() && likeliest && open.empty()) return {Finding::kAgreement, {}};
   // Where not all that is named is sure, those without whom hardly anything likely does.
   std::set<std::string> sure;
   if (probability_of_best >= kSure * known)
@@ -112,7 +126,7 @@ Ruling rule(const Posterior& p, std::span<const Suspect> suspects) {
     });
     return {artefacts ? Finding::kMeasurementArtefact : Finding::kMissingEffect, sure};
   }
-  Ruling ruling{Finding::kAmbiguous, {}};
+  Ruling ruling{Finding::kAmbiguous, std::move(open)};
   double sum = p.unknown;
   for (const auto& [names, probability] : sets) {
     if (sum >= kCredible) break;

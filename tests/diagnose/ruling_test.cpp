@@ -44,9 +44,26 @@ TEST(Ruling, DoesNotDecideWhatTheDataLeaveOpen) {
   EXPECT_EQ(open.finding, Finding::kAmbiguous);
   EXPECT_EQ(open.names, (Names{"rolling_resistance", "cohesion"}));
   EXPECT_EQ(ruled({{{}, 0.6}, {{0}, 0.4}}).finding, Finding::kAgreement);
-  EXPECT_EQ(ruled({{{}, 0.4}, {{0}, 0.3}, {{1}, 0.3}}).finding, Finding::kAmbiguous);
-  EXPECT_EQ(ruled({{{}, 0.4}, {{0}, 0.1}, {{1}, 0.1}, {{2}, 0.1}, {{0, 1}, 0.02}}).finding, Finding::kAgreement);
+  EXPECT_EQ(ruled({{{}, 0.4}, {{0}, 0.3}, {{0, 1}, 0.3}}).finding, Finding::kAmbiguous);
   EXPECT_EQ(ruled({{{0}, 0.3}}, 0.7).finding, Finding::kUnknownEffect);
+}
+
+TEST(Ruling, FindsNothingOnlyWhereSomethingWouldHaveShown) {
+  Posterior p;
+  p.accusations.resize(2);
+  p.accusations[0].probability = 0.8;
+  Explanation& one = p.accusations[1].explanation;
+  p.accusations[1].probability = 0.2;
+  one.suspects = {1};
+  one.free = {1};  // places: the three strengths
+  one.places = Eigen::VectorXd::Zero(3);
+  const auto ruling = [&](double se) {
+    one.covariance = Eigen::MatrixXd::Constant(1, 1, se * se);
+    return rule(p, three_suspects());
+  };
+  EXPECT_EQ(ruling(0.1).finding, Finding::kAgreement);
+  EXPECT_EQ(ruling(0.6).finding, Finding::kAmbiguous);
+  EXPECT_EQ(ruling(0.6).names, Names{"cohesion"});
 }
 
 }  // namespace
