@@ -14,47 +14,20 @@
 namespace tumble::diagnose {
 namespace {
 
-constexpr std::size_t kFewest = 64;   // samples, for a balance over the same time
-constexpr double kSameTime = 0.04;    // of the duration: clocks may disagree by that and mean the same stretch
+constexpr std::size_t kFewest = 64;   // frames
 constexpr double kInstrument = 5e-4;  // of the torque
 
 struct Balance {
   double off = kNotGiven, se = kNotGiven;  // T - M g x_com - dL/dt [N m]
 };
 
-// Means of what lies in [from, to).
-double mean_in(const std::vector<double>& time, const std::vector<double>& value, double from, double to) {
-  const auto a = std::lower_bound(time.begin(), time.end(), from) - time.begin();
-  const auto b = std::lower_bound(time.begin(), time.end(), to) - time.begin();
-  double sum = 0;
-  for (auto i = a; i < b; ++i) sum += value[static_cast<std::size_t>(i)];
-  return sum / double(b - a);
-}
-
-// At a moment: the mean of those around it that are known.
-double near(const std::vector<double>& time, const std::vector<double>& value, double at) {
-  const auto middle = std::lower_bound(time.begin(), time.end(), at) - time.begin();
-  const auto n = static_cast<std::ptrdiff_t>(time.size());
-  double sum = 0, known = 0;
-  for (std::ptrdiff_t i = std::max<std::ptrdiff_t>(0, middle - 3); i < std::min(n, middle + 3); ++i)
-    if (const double v = value[static_cast<std::size_t>(i)]; !std::isnan(v)) sum += v, ++known;
-  return sum / known;
-}
-
 // Over the same stretch of time the two are equal but for what the instruments err. Noise of the torque goes with the
 // number of blocks, noise of L, which ends one block and begins the next, with its square: two ways to cut the time
 // tell them apart.
-Balance balance_over(const SeenCharge& charge, const std::vector<double>& time, const std::vector<double>& torque) {
-  const double from = std::max(charge.time.front(), time.front()), to = std::min(charge.time.back(), time.back());
+Balance balance_over(const SeenCharge& charge, const Measurement& m) {
   const auto residuals = [&](int blocks) {
     std::vector<double> off;
-    for (int b = 0; b < blocks; ++b) {
-      const double begin = from + (to - from) * b / blocks, end = from + (to - from) * (b + 1) / blocks;
-      const double gained =
-          near(charge.time, charge.angular_momentum, end) - near(charge.time, charge.angular_momentum, begin);
-      off.push_back(mean_in(time, torque, begin, end) - mean_in(charge.time, charge.moment, begin, end) -
-                    gained / (end - begin));
-    }
+    for (const TorqueBlock& b : torque_blocks(charge, m, blocks)) off.push_back(b.read - b.needed);
     return off;
   };
   constexpr int kFew = 12, kMany = 48;
@@ -79,13 +52,9 @@ void check_balance(const Measurement& m, std::vector<ExactCheck>& checks) {
     const SeenCharge charge = see_charge(m);
     const Estimate weight = mean_of_series(charge.moment);
     const double height = mean_of_series(charge.height).value;
-    std::vector<double> time, torque;
-    for (const TorqueSample& s : m.torque_series) time.push_back(s.time), torque.push_back(s.torque);
-    const double lasts = charge.time.back() - charge.time.front();
-    const bool together = time.size() >= kFewest && std::abs(time.front() - charge.time.front()) < kSameTime * lasts &&
-                          std::abs(time.back() - charge.time.back()) < kSameTime * lasts;
+    const bool together = !torque_blocks(charge, m, 1).empty();
     Balance balance{m.torque.value - weight.value, std::hypot(m.torque.se, weight.se)};
-    if (together) balance = balance_over(charge, time, torque);
+    if (together) balance = balance_over(charge, m);
     balance.se = std::hypot(balance.se, m.torque_error, kInstrument * m.torque.value);
     const double mass_gravity = slice_mass(m.config, class_counts(m.config)) * kGravity;
     const std::vector<MovedBy> by{{"torque_offset", 1 / m.torque.value},

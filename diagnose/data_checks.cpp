@@ -17,7 +17,13 @@ namespace tumble::diagnose {
 namespace {
 
 // What no suspect does: twice what is looked for (suspects.cpp), or more.
-constexpr double kLength = 0.1, kSpeed = 0.08, kBalls = 0.2, kClosure = 0.25, kGravityOff = 0.3, kTurnedDeg = 12;
+constexpr double kLength = 0.1, kSpeed = 0.08, kBalls = 0.2, kGravityOff = 0.3, kTurnedDeg = 12;
+// Of the torque, by which it may miss what the charge's weight takes: as a mean, and as a series that does not follow
+// the charge. One that does is this charge's, whatever else takes torque (a pool, a fluid, a magnet).
+constexpr double kClosure = 0.5, kClosureOfStranger = 0.08;
+constexpr double kFollows =
+    0.5;  // correlation; of the same run 0.8 and more, of another by chance one over the root of the number
+constexpr double kBlocks = 6;  // a revolution: a clock that errs moves them little against each other
 constexpr double kLeastShare = 0.01, kMostShare = 1.0;  // of M g R: torques that a charge can need
 constexpr double kUnit = 30;                            // a factor as large is another unit
 constexpr std::size_t kFewestFrames = 8, kFewestFlights = 40;
@@ -133,6 +139,18 @@ void check_charge(const Measurement& m, const MillShape& shape) {
             seen, expected));
 }
 
+double correlation(const std::vector<TorqueBlock>& blocks) {
+  const double n = double(blocks.size());
+  double read = 0, needed = 0, both = 0, read2 = 0, needed2 = 0;
+  for (const TorqueBlock& b : blocks) read += b.read / n, needed += b.needed / n;
+  for (const TorqueBlock& b : blocks) {
+    both += (b.read - read) * (b.needed - needed);
+    read2 += (b.read - read) * (b.read - read);
+    needed2 += (b.needed - needed) * (b.needed - needed);
+  }
+  return both / std::sqrt(read2 * needed2);
+}
+
 void check_torque(const Measurement& m, const MillShape& shape) {
   if (std::isnan(m.torque.value)) return;
   const double slices = slice_count(m.config), weight = slice_mass(m.config, class_counts(m.config)) * kGravity;
@@ -147,13 +165,21 @@ void check_torque(const Measurement& m, const MillShape& shape) {
                            kLeastShare * weight * shape.radius * slices, kMostShare * weight * shape.radius * slices));
   if (m.frames.size() < kFewestFrames || m.revolutions < 1 || (m.is_film && slice_rule(m.config) == SliceRule::kWeight))
     return;
-  const double held = mean_of_series(see_charge(m).moment).value;
-  if (std::abs(m.torque.value / held - 1) > kClosure)
-    throw InputError(
-        place,
-        fmt::format("the torque is {:.4g} N m, but to hold the charge where {} shows it takes {:.4g} N m ({:+.0f} %); "
-                    "give torque and frames of the same experiment",
-                    m.torque.value * slices, m.frames_file, held * slices, 100 * (m.torque.value / held - 1)));
+  const SeenCharge charge = see_charge(m);
+  const double held = mean_of_series(charge.moment).value;
+  const double off = m.torque.value / held - 1;
+  const std::string missed =
+      fmt::format("the torque is {:.4g} N m, but to hold the charge where {} shows it takes {:.4g} N m ({:+.0f} %)",
+                  m.torque.value * slices, m.frames_file, held * slices, 100 * off);
+  const auto blocks = torque_blocks(charge, m, static_cast<int>(kBlocks * m.revolutions));
+  const double follows = blocks.empty() ? 0 : correlation(blocks), by_chance = 1 / std::sqrt(double(blocks.size()));
+  if (!blocks.empty() && follows + 2 * by_chance < kFollows && std::abs(off) > kClosureOfStranger)
+    throw InputError(place,
+                     fmt::format("{}, and the torque series does not follow that charge (correlation {:.2f}); give "
+                                 "torque and frames of the same experiment",
+                                 missed, follows));
+  if (!(follows > kFollows) && std::abs(off) > kClosure)
+    throw InputError(place, missed + "; give torque and frames of the same experiment");
 }
 
 }  // namespace

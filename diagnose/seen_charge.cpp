@@ -8,7 +8,9 @@
 namespace tumble::diagnose {
 namespace {
 
-constexpr double kReach = 0.008;  // before and after a frame, of velocities [s]: noise of places counts little then
+constexpr std::size_t kFewest = 64;  // samples of a torque series, for a balance over the same time
+constexpr double kSameTime = 0.04;   // of the duration: clocks may disagree by that and mean the same stretch
+constexpr double kReach = 0.008;     // before and after a frame, of velocities [s]: noise of places counts little then
 
 std::vector<double> masses_of(const Config& config, double& mean) {
   const std::vector<int> counts = class_counts(config);
@@ -37,6 +39,25 @@ void whirl(const SeenFrame& before, const SeenFrame& here, const SeenFrame& afte
     sum += mass_of_ball[k] * (s.x * (b.y - a.y) - s.y * (b.x - a.x)) / seconds;
     mass += mass_of_ball[k];
   }
+}
+
+// Means of what lies in [from, to).
+double mean_in(const std::vector<double>& time, const std::vector<double>& value, double from, double to) {
+  const auto a = std::lower_bound(time.begin(), time.end(), from) - time.begin();
+  const auto b = std::lower_bound(time.begin(), time.end(), to) - time.begin();
+  double sum = 0;
+  for (auto i = a; i < b; ++i) sum += value[static_cast<std::size_t>(i)];
+  return sum / double(b - a);
+}
+
+// At a moment: the mean of those around it that are known.
+double near(const std::vector<double>& time, const std::vector<double>& value, double at) {
+  const auto middle = std::lower_bound(time.begin(), time.end(), at) - time.begin();
+  const auto n = static_cast<std::ptrdiff_t>(time.size());
+  double sum = 0, known = 0;
+  for (std::ptrdiff_t i = std::max<std::ptrdiff_t>(0, middle - 3); i < std::min(n, middle + 3); ++i)
+    if (const double v = value[static_cast<std::size_t>(i)]; !std::isnan(v)) sum += v, ++known;
+  return sum / known;
 }
 
 }  // namespace
@@ -82,6 +103,26 @@ SeenCharge see_charge(const Measurement& m) {
     seen.angular_momentum.push_back(known > 0 ? sum * total / known : kNotGiven);
   }
   return seen;
+}
+
+std::vector<TorqueBlock> torque_blocks(const SeenCharge& charge, const Measurement& m, int blocks) {
+  std::vector<double> time, torque;
+  for (const TorqueSample& s : m.torque_series) time.push_back(s.time), torque.push_back(s.torque);
+  if (time.size() < kFewest || charge.time.empty()) return {};
+  const double lasts = charge.time.back() - charge.time.front();
+  if (!(std::abs(time.front() - charge.time.front()) < kSameTime * lasts &&
+        std::abs(time.back() - charge.time.back()) < kSameTime * lasts))
+    return {};
+  const double from = std::max(charge.time.front(), time.front()), to = std::min(charge.time.back(), time.back());
+  std::vector<TorqueBlock> all;
+  for (int b = 0; b < blocks; ++b) {
+    const double begin = from + (to - from) * b / blocks, end = from + (to - from) * (b + 1) / blocks;
+    const double gained =
+        near(charge.time, charge.angular_momentum, end) - near(charge.time, charge.angular_momentum, begin);
+    all.push_back(
+        {mean_in(time, torque, begin, end), mean_in(charge.time, charge.moment, begin, end) + gained / (end - begin)});
+  }
+  return all;
 }
 
 }  // namespace tumble::diagnose

@@ -20,6 +20,14 @@ struct SeenCharge {
 // radius weighs; the mean where its radius is not known.
 SeenCharge see_charge(const Measurement& m);
 
+// Means over a block of time: of the torque that was read, and of what it takes to hold the charge and to speed it up,
+// M g x_com + dL/dt [N m].
+struct TorqueBlock {
+  double read = 0, needed = 0;
+};
+// Blocks of equal duration; none where the torque is no series, or not over the same time as the frames.
+std::vector<TorqueBlock> torque_blocks(const SeenCharge& charge, const Measurement& m, int blocks);
+
 // Index of the class nearest in radius; -1 where there is none or the radius is NaN.
 int class_of(const Config& config, double radius);
 

@@ -79,12 +79,25 @@ TEST(DataChecks, RefuseDataOfAnotherExperiment) {
   m.config.charge.count = 150;
   EXPECT_THAT(said_of(m), AllOf(HasSubstr("112 balls"), HasSubstr("150")));
   m = measure(run(), {}, 1);
-  m.torque.value *= 1.5;
+  m.torque.value *= 1.6;
+  m.torque_series.clear();
   EXPECT_THAT(said_of(m), HasSubstr("of the same experiment"));
   m = measure(run(), {}, 1);
   m.is_film = true;
   m.motion.lifters_seen = 12;
   EXPECT_THAT(said_of(m), AllOf(HasSubstr("12 times a turn"), HasSubstr("mill.lifters.count = 18")));
+}
+
+// Something may take torque that does not move the charge (a pool, a magnet): then the torque is not what the charge's
+// weight takes, and yet it goes up and down with it.
+TEST(DataChecks, TorqueOfAnotherRunDoesNotFollowTheCharge) {
+  static const SimulatedRun longer = simulate_paper_mill(6);
+  Measurement m = measure(longer, {}, 1);
+  m.torque.value *= 1.3;
+  EXPECT_EQ(said_of(m), "fine");
+  const std::vector<TorqueSample> own = m.torque_series;
+  for (std::size_t i = 0; i < own.size(); ++i) m.torque_series[i].torque = own[own.size() - 1 - i].torque;
+  EXPECT_THAT(said_of(m), AllOf(HasSubstr("does not follow that charge"), HasSubstr("of the same experiment")));
 }
 
 }  // namespace
