@@ -10,6 +10,7 @@
 #include "core/quantile.h"
 #include "diagnose/check_parts.h"
 #include "diagnose/free_flight.h"
+#include "diagnose/lost_balls.h"
 #include "diagnose/seen_charge.h"
 #include "diagnose/seen_motion.h"
 
@@ -132,7 +133,7 @@ Estimate part(const FlightFit& f, Term t) {
 
 std::vector<FreeFall> clean_flights(const Measurement& m) {
   FreeFlights flights(make_mill_shape(m.config).tip_radius);
-  for (const SeenFrame& f : m.frames) flights.add(f.time, f.balls);
+  for (const SeenFrame& f : with_lost_balls(m.frames)) flights.add(f.time, f.balls);
   std::vector<FreeFall> windows = flights.windows();
   std::erase_if(windows, [](const FreeFall& w) { return std::isnan(w.radius); });
   if (windows.empty()) return windows;

@@ -35,8 +35,8 @@ void FreeFlights::add(double time, std::span<const Sighting> balls) {
   }
   std::map<int, Window> going_on;
   for (std::size_t i = 0; i < by_x.size(); ++i) {
-    if (touched[i]) continue;
     const Sighting& s = *by_x[i];
+    if (touched[i] || s.guessed) continue;
     Window w;
     if (const auto before = open_.find(s.ball); before != open_.end() && time - before->second.t.back() < kWindow / 2)
       w = std::move(before->second);

@@ -69,6 +69,7 @@ struct Sighting {
   double x = 0, y = 0;  // [m]
   double radius = 0;    // [m]
   double spin = kNotGiven;
+  bool guessed = false;  // not seen, but where its path before and after says that it is
 };
 
 // How the observer errs: seen = as it is for all zeros. Artefacts of measurement, applied to what is seen.

@@ -7,6 +7,7 @@
 #include "core/units.h"
 #include "diagnose/contact_laws.h"
 #include "diagnose/free_flight.h"
+#include "diagnose/lost_balls.h"
 #include "diagnose/seen_charge.h"
 #include "diagnose/tracking_noise.h"
 
@@ -75,18 +76,17 @@ Observation observe(const Measurement& m, const ObservationLayout& layout, doubl
       maps.finish(0, maps_alone);
       return maps_alone;
     };
+    const std::vector<SeenFrame> whole = with_lost_balls(m.frames);
     FreeFlights flights(shape.tip_radius);
     ContactLaws laws(m.config);
-    for (const SeenFrame& frame : m.frames) {
-      flights.add(frame.time, frame.balls);
-      laws.add(frame.time, frame.mill_angle, frame.balls);
-    }
-    const Observation maps = look_at(m.frames);
+    for (const SeenFrame& frame : whole) flights.add(frame.time, frame.balls);
+    for (const SeenFrame& frame : m.frames) laws.add(frame.time, frame.mill_angle, frame.balls);
+    const Observation maps = look_at(whole);
     for (std::size_t i = layout.first(Observable::kOccupancy); i < layout.first(Observable::kFlight); ++i)
       seen.value[i] = maps.value[i];
     // Noise of tracking blurs the maps: as much more of it blurs them as much again (SIMEX: Cook & Stefanski 1994).
     if (const double noise = noise_of_places(m.frames); noise > 0) {
-      const Observation blurred = look_at(noisier(m.frames, noise));
+      const Observation blurred = look_at(noisier(whole, noise));
       for (std::size_t i = layout.first(Observable::kOccupancy); i < layout.first(Observable::kFlight); ++i)
         seen.value[i] -= blurred.value[i] - maps.value[i];
     }
