@@ -42,32 +42,44 @@ struct State {
   Eigen::VectorXd gradient;  // of misfit / 2
 };
 
+struct Rest {  // of one condition's numbers, beside what is expected
+  Response::Expected expected;
+  Eigen::VectorXd value;
+  double variance = 0, chi2 = 0, weight = 0;
+  double misfit = 0;  // -2 ln of the likelihood, but for constants
+};
+
+Rest rest_of(const Measured& m, const Eigen::VectorXd& places) {
+  Rest r{m.response->at(places), {}};
+  const bool shown = m.shift.size() > 0;
+  r.variance = m.scatter * m.response->revolutions() / m.revolutions + (shown ? m.shift_variance : r.expected.guess);
+  r.value = m.seen - r.expected.mean;
+  if (shown) r.value -= m.shift;
+  r.chi2 = r.value.squaredNorm() / r.variance;
+  // A multivariate Student's t with the scatter's covariance; for many degrees of freedom the normal distribution.
+  const double freedom = m.response->tail_freedom(), numbers = double(m.response->numbers());
+  r.misfit = (freedom + numbers) * std::log1p(r.chi2 / (freedom - 2)) + numbers * std::log(r.variance);
+  r.weight = (freedom + numbers) / (freedom - 2 + r.chi2) / r.variance;
+  return r;
+}
+
 State look(const Problem& problem, const Eigen::VectorXd& x) {
   State s;
   const auto n = x.size();
   s.information = problem.prior_sd.cwiseAbs2().cwiseInverse().asDiagonal();
   s.gradient = s.information * x;
   s.misfit = x.dot(s.gradient);
-  for (const Measured& m : problem.measured) {
-    const auto expected = m.response->at(problem.all(x));
-    const bool shown = m.shift.size() > 0;
-    const double variance =
-        m.scatter * m.response->revolutions() / m.revolutions + (shown ? m.shift_variance : expected.guess);
-    Eigen::VectorXd rest = m.seen - expected.mean;
-    if (shown) rest -= m.shift;
-    Eigen::MatrixXd slope(rest.size(), n);
-    for (Eigen::Index i = 0; i < n; ++i) slope.col(i) = expected.slope.col(problem.free[static_cast<std::size_t>(i)]);
-    const double chi2 = rest.squaredNorm() / variance;
-    s.chi2 += chi2;
-    s.chi2_of.push_back(chi2);
-    // A multivariate Student's t with the scatter's covariance; for many degrees of freedom the normal distribution.
-    const double freedom = m.response->tail_freedom(), numbers = double(m.response->numbers());
-    s.misfit += (freedom + numbers) * std::log1p(chi2 / (freedom - 2)) + numbers * std::log(variance);
-    const double weight = (freedom + numbers) / (freedom - 2 + chi2) / variance;
-    s.information += weight * slope.transpose() * slope;
-    s.gradient -= weight * slope.transpose() * rest;
-  }
   const Eigen::VectorXd places = problem.all(x);
+  for (const Measured& m : problem.measured) {
+    const Rest r = rest_of(m, places);
+    Eigen::MatrixXd slope(r.value.size(), n);
+    for (Eigen::Index i = 0; i < n; ++i) slope.col(i) = r.expected.slope.col(problem.free[static_cast<std::size_t>(i)]);
+    s.chi2 += r.chi2;
+    s.chi2_of.push_back(r.chi2);
+    s.misfit += r.misfit;
+    s.information += r.weight * slope.transpose() * slope;
+    s.gradient -= r.weight * slope.transpose() * r.value;
+  }
   for (const Clue& clue : problem.clues) {
     double rest = clue.value / clue.se;
     Eigen::VectorXd slope = Eigen::VectorXd::Zero(n);
@@ -132,6 +144,12 @@ double Explanation::se(int place) const {
   for (std::size_t i = 0; i < free.size(); ++i)
     if (free[i] == place) return std::sqrt(covariance(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(i)));
   return kNotGiven;
+}
+
+double log_likelihood(std::span<const Measured> measured, const Eigen::VectorXd& places) {
+  double sum = 0;
+  for (const Measured& m : measured) sum -= 0.5 * rest_of(m, places).misfit;
+  return sum;
 }
 
 Explanation explain(std::span<const Measured> measured, std::span<const Suspect> suspects, std::vector<int> guilty,

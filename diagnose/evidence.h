@@ -40,4 +40,7 @@ struct Explanation {
 Explanation explain(std::span<const Measured> measured, std::span<const Suspect> suspects, std::vector<int> guilty,
                     std::span<const Clue> clues = {});
 
+// Of what was measured, where everything is known; but for constants.
+double log_likelihood(std::span<const Measured> measured, const Eigen::VectorXd& places);
+
 }  // namespace tumble::diagnose

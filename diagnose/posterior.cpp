@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <set>
 
 namespace tumble::diagnose {
@@ -27,32 +26,26 @@ bool turns(const Case& of, const std::vector<int>& guilty) {
                      [&](int s) { return of.suspects[static_cast<std::size_t>(s)].turns_with_drum; });
 }
 
-using KnownEvidence = std::map<std::pair<std::vector<int>, std::size_t>, double>;  // by guilty and lifter
-
 // Turning a drum on which all lifters are alike changes nothing, but the chance in one film it does: so who turns with
-// the drum is compared with the same accusation without him, the drum turned as far.
-double evidence_at(const Case& of, std::size_t lifter, const Explanation& e, KnownEvidence& known) {
+// the drum is compared with the same mill without him, the drum turned as far.
+double evidence_at(const Case& of, std::size_t lifter, const Explanation& e) {
   if (lifter == 0) return e.log_evidence;
-  std::vector<int> others;
+  Eigen::VectorXd without = e.places;
+  const auto keys = without.size() - static_cast<Eigen::Index>(of.suspects.size());
   for (const int s : e.suspects)
-    if (!of.suspects[static_cast<std::size_t>(s)].turns_with_drum) others.push_back(s);
-  const auto without = [&](std::size_t l) {
-    const auto [at, is_new] = known.try_emplace({others, l}, 0);
-    if (is_new) at->second = explain(of.by_lifter[l], of.suspects, others, of.clues).log_evidence;
-    return at->second;
-  };
-  return e.log_evidence - without(lifter) + without(0);
+    if (of.suspects[static_cast<std::size_t>(s)].turns_with_drum) without[keys + s] = 0;
+  return e.log_evidence - log_likelihood(of.by_lifter[lifter], without) + log_likelihood(of.by_lifter[0], without);
 }
 
 // Somewhere on the drum: every lifter is as likely as the others.
-Accusation accuse(const Case& of, const std::vector<int>& guilty, double log_prior, KnownEvidence& known) {
+Accusation accuse(const Case& of, const std::vector<int>& guilty, double log_prior) {
   Accusation best;
   std::vector<double> evidence;
   const std::size_t lifters = turns(of, guilty) ? of.by_lifter.size() : 1;
   double most = -INFINITY;
   for (std::size_t l = 0; l < lifters; ++l) {
     Explanation e = explain(of.by_lifter[l], of.suspects, guilty, of.clues);
-    evidence.push_back(evidence_at(of, l, e, known));
+    evidence.push_back(evidence_at(of, l, e));
     if (!(evidence.back() > most)) continue;
     most = evidence.back();
     best.explanation = std::move(e);
@@ -85,10 +78,9 @@ Posterior weigh(const Case& of) {
     }));
   };
 
-  KnownEvidence known;
-  p.accusations.push_back(accuse(of, {}, std::log(kNone), known));
+  p.accusations.push_back(accuse(of, {}, std::log(kNone)));
   for (int s = 0; s < n; ++s)
-    p.accusations.push_back(accuse(of, {s}, std::log(kSingles / double(names.size()) / of_name(s)), known));
+    p.accusations.push_back(accuse(of, {s}, std::log(kSingles / double(names.size()) / of_name(s))));
 
   std::vector<std::size_t> order(static_cast<std::size_t>(n));
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = i + 1;
@@ -103,7 +95,7 @@ Posterior weigh(const Case& of) {
       if (a == b || !done.insert({a, b}).second) continue;
       const Suspect &one = of.suspects[static_cast<std::size_t>(a)], &two = of.suspects[static_cast<std::size_t>(b)];
       if (one.name == two.name || (one.turns_with_drum && two.turns_with_drum)) continue;
-      p.accusations.push_back(accuse(of, {a, b}, std::log(kPairs / pairs / of_name(a) / of_name(b)), known));
+      p.accusations.push_back(accuse(of, {a, b}, std::log(kPairs / pairs / of_name(a) / of_name(b))));
     }
   settle(p, of);
   return p;
@@ -112,9 +104,8 @@ Posterior weigh(const Case& of) {
 Accusation weighed_again(const Accusation& accusation, const Case& of) {
   Accusation again = accusation;
   const auto lifter = static_cast<std::size_t>(accusation.lifter);
-  KnownEvidence known;
   again.explanation = explain(of.by_lifter[lifter], of.suspects, accusation.explanation.suspects, of.clues);
-  again.log_weight = accusation.log_beside + evidence_at(of, lifter, again.explanation, known);
+  again.log_weight = accusation.log_beside + evidence_at(of, lifter, again.explanation);
   return again;
 }
 
