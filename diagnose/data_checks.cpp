@@ -18,15 +18,16 @@ namespace {
 
 // What no suspect does: twice what is looked for (suspects.cpp), or more.
 constexpr double kLength = 0.1, kSpeed = 0.08, kBalls = 0.2, kGravityOff = 0.3, kTurnedDeg = 12;
-// Of the torque, by which it may miss what the charge's weight takes: as a mean, and as a series that does not follow
-// the charge. One that does is this charge's, whatever else takes torque (a pool, a fluid, a magnet).
-constexpr double kClosure = 0.5, kClosureOfStranger = 0.08;
-constexpr double kFollows =
-    0.5;  // correlation; of the same run 0.8 and more, of another by chance one over the root of the number
-constexpr double kBlocks = 6;  // a revolution: a clock that errs moves them little against each other
+// Of the torque, by which it may miss what the charge's weight takes: as a mean (what else lies in a mill takes torque
+// and gives none), and as a series that does not follow the charge. One that does is this charge's, whatever else
+// takes torque (a pool, a fluid, a magnet).
+constexpr double kLess = 0.25, kMore = 0.5, kMost = 1, kClosureOfStranger = 0.08;
+constexpr double kFollows = 0.8;  // correlation of one run's, or more; of two runs' 0.5 or less: they share the lifters
+constexpr double kSurely = 2.5;   // standard errors
+constexpr double kBlocks = 6;     // a revolution: a clock that errs moves them little against each other
 constexpr double kLeastShare = 0.01, kMostShare = 1.0;  // of M g R: torques that a charge can need
 constexpr double kUnit = 30;                            // a factor as large is another unit
-constexpr std::size_t kFewestFrames = 8, kFewestFlights = 40;
+constexpr std::size_t kFewestFrames = 8, kFewestFlights = 40, kFewestBlocks = 6;
 
 // "; are these ms?" where a factor of a thousand would set it right.
 std::string unit_hint(double factor, const char* smaller, const char* larger) {
@@ -172,14 +173,17 @@ void check_torque(const Measurement& m, const MillShape& shape) {
       fmt::format("the torque is {:.4g} N m, but to hold the charge where {} shows it takes {:.4g} N m ({:+.0f} %)",
                   m.torque.value * slices, m.frames_file, held * slices, 100 * off);
   const auto blocks = torque_blocks(charge, m, static_cast<int>(kBlocks * m.revolutions));
-  const double follows = blocks.empty() ? 0 : correlation(blocks), by_chance = 1 / std::sqrt(double(blocks.size()));
-  if (!blocks.empty() && follows + 2 * by_chance < kFollows && std::abs(off) > kClosureOfStranger)
+  const bool series = blocks.size() >= kFewestBlocks;
+  if (off < -kLess || off > (series ? kMost : kMore))
+    throw InputError(place, missed + "; give torque and frames of the same experiment");
+  if (!series) return;
+  // Fisher's z, whose standard error depends on the number alone.
+  const double follows = correlation(blocks), error = 1 / std::sqrt(double(blocks.size()) - 3);
+  if (std::atanh(kFollows) - std::atanh(follows) > kSurely * error && std::abs(off) > kClosureOfStranger)
     throw InputError(place,
                      fmt::format("{}, and the torque series does not follow that charge (correlation {:.2f}); give "
                                  "torque and frames of the same experiment",
                                  missed, follows));
-  if (!(follows > kFollows) && std::abs(off) > kClosure)
-    throw InputError(place, missed + "; give torque and frames of the same experiment");
 }
 
 }  // namespace

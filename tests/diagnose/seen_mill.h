@@ -16,8 +16,10 @@ struct SimulatedRun {
   std::vector<Frame> frames;
 };
 
-inline SimulatedRun simulate_paper_mill(double revolutions, const std::map<std::string, EffectSettings>& effects = {}) {
+inline SimulatedRun simulate_paper_mill(double revolutions, const std::map<std::string, EffectSettings>& effects = {},
+                                        std::uint64_t packing = 1) {
   Config config = paper_mill();
+  config.run.seed = packing;
   config.effects = effects;
   config.run.spin_up = 1.5;
   config.run.revolutions = revolutions;
